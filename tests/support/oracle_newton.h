@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Newton's method on the oracle's assembled system, with a direct sparse factorisation: the same schedule
+// of clamped pressures as the solver, so that both find the same minimum, and nothing else in common.
+#include <optional>
+#include <vector>
+
+#include "oracle_system.h"
+
+namespace drumhead::oracle {
+
+struct NewtonOptions {
+  int max_steps = 80;
+  double tolerance = 1e-10;  ///< largest |dx| of the last step, in cells
+  double max_theta_boost = 8.0;
+};
+
+struct OracleStep {
+  double theta = 1.0, t = 1.0, dx_max = 0.0, gradient_max = 0.0, merit = 0.0;
+};
+
+struct OracleResult {
+  State state;
+  bool converged = false;
+  std::vector<OracleStep> steps;
+  double linear_residual = 0.0;  ///< largest relative residual of the linear solves
+};
+
+/// The minimum without pressures (kappa = 0 everywhere), which is a linear problem; P = 0.
+State harmonic(const OracleScene& scene);
+
+/// Newton from `start`, or from the harmonic solution.
+OracleResult newton(const OracleScene& scene, const std::optional<State>& start = {},
+                    const NewtonOptions& options = {});
+
+/// Solves matrix · step = right side for a symmetric indefinite matrix that may be (consistently) singular
+/// in its P and q blocks: those are shifted by −1e-9 for the factorisation and the shift is refined away.
+/// `first_multiplier`: index of the first P. Returns the relative residual left.
+double solve(const Eigen::SparseMatrix<double>& matrix, const Eigen::VectorXd& right,
+             int first_multiplier, Eigen::VectorXd& step);
+
+}  // namespace drumhead::oracle
