@@ -1,0 +1,43 @@
+#!/bin/sh
+# Installs the Debian 12 packages that are missing, as root or with sudo:
+#   sh tests/install.sh        what the release preset builds and runs (driver/demo.sh and tests/run.sh)
+#   sh tests/install.sh all    also the presets clang and tsan, and tests/tidy.sh
+# Where nothing is missing, it uses no network and no privileges.
+set -eu
+
+# The build, then the library, the driver, the tests, the benchmarks.
+packages="
+  cmake ninja-build g++ pkg-config
+  libxsimd-dev libeigen3-dev
+  libopenimageio-dev openimageio-tools libpugixml-dev libtomlplusplus-dev libcli11-dev
+  nlohmann-json3-dev lib2geom-dev libcairo2-dev librsvg2-bin
+  libgtest-dev
+  libbenchmark-dev"
+if [ "${1:-}" = all ]; then
+  packages="$packages clang-14 libomp-14-dev clang-format-14 clang-tidy-14"
+fi
+
+missing=
+for package in $packages; do
+  case $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) in
+    installed) ;;
+    *) missing="$missing $package" ;;
+  esac
+done
+[ -n "$missing" ] || exit 0
+
+as_root=
+if [ "$(id -u)" != 0 ]; then
+  command -v sudo >/dev/null || {
+    echo "tests/install.sh: needs root or sudo to install$missing" >&2
+    exit 1
+  }
+  as_root=sudo
+fi
+install() {
+  # $missing is a list of words.
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
+}
+echo "Installing$missing"
+# A fresh system has no package lists, or ones so old that their versions are gone from the mirrors.
+install || { $as_root apt-get update -q && install; }
