@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/kernels/elastic.h>
+
+#include <vector>
+
+#include "kernel_table.h"
+#include "parallel.h"
+
+namespace drumhead::kernels {
+
+template <class T>
+void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unknowns<T>& out) {
+  const KernelTable<T>& kernels = table<T>();
+  for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
+    if (j > 0) kernels.apply_nodes(m, nullptr, d, out.x.row(j), out.y.row(j), j);
+    if (d.p) kernels.apply_cells(m, nullptr, d, out.p.row(j), j);
+  });
+}
+
+template <class T>
+void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<const T>& d,
+                     const Unknowns<T>& r) {
+  const KernelTable<T>& kernels = table<T>();
+  for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
+    if (j > 0) kernels.residual_nodes(m, &f, d, r.x.row(j), r.y.row(j), j);
+    if (d.p) kernels.residual_cells(m, &f, d, r.p.row(j), j);
+  });
+}
+
+template <class T>
+void force(const Membrane<T>& m, const Unknowns<T>& f) {
+  const KernelTable<T>& kernels = table<T>();
+  for_rows(0, f.x.rows - 1, f.x.columns, [&](int j) {
+    if (j > 0) kernels.force_nodes(m, f, j);
+    if (m.pressure) kernels.force_cells(m, f, j);
+  });
+}
+
+template <class T>
+EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
+  const KernelTable<T>& kernels = table<T>();
+  const int rows = m.ux.rows - 1;
+  std::vector<EnergySums> of_row(static_cast<std::size_t>(rows));
+  for_rows(0, rows, m.ux.columns, [&](int j) {
+    kernels.energy(m, d, step, bool(d.x), of_row[std::size_t(j)], j);
+  });
+  EnergySums sums;
+  for (const EnergySums& row : of_row) {
+    sums.elastic += row.elastic;
+    sums.volume += row.volume;
+    sums.volume_merit += row.volume_merit;
+    sums.inverted_cells += row.inverted_cells;
+  }
+  return sums;
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                                  \
+  template void apply_hessian(const Membrane<T>&, const Unknowns<const T>&, const Unknowns<T>&); \
+  template void linear_residual(const Membrane<T>&, const Unknowns<const T>&,                    \
+                                const Unknowns<const T>&, const Unknowns<T>&);                   \
+  template void force(const Membrane<T>&, const Unknowns<T>&);                                   \
+  template EnergySums energy(const Membrane<T>&, const Unknowns<const T>&, T);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::kernels

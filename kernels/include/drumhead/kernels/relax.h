@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The relaxation of one level, fused with the transfers around it into one skewed pass over the rows:
+//   [clear d or add the prolonged coarse correction] → nodes red → nodes black → volume rows, 2×2 colours →
+//   curve rows → curve rows and volume rows in reverse → [residual, restricted to the coarser level].
+// Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag K inner
+// product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014, Eq. 4).
+#include <vector>
+
+#include <drumhead/kernels/cuts.h>
+#include <drumhead/kernels/views.h>
+
+namespace drumhead::kernels {
+
+/// One level of a Newton system: operator, correction and right-hand side. f.x, f.y carry the curve forces
+/// Wᵀ dq (see cuts.h) and change with dq.
+template <class T>
+struct LevelSystem {
+  Membrane<T> membrane;
+  Cuts<T> cuts;
+  Unknowns<T> d, f;
+  T* dq = nullptr;        ///< two per cut
+  const T* fq = nullptr;  ///< right-hand side of the curve rows
+};
+
+/// Row buffers for the fused restriction, one set a thread; make once, reuse.
+template <class T>
+class RowScratch {
+ public:
+  RowScratch(int columns, int threads);
+  struct Rows {
+    T* x[4];
+    T* y[4];
+    T* p[2];
+    int held[4];  ///< which residual row x[r], y[r] hold, −1: none
+  };
+  Rows& rows(int thread) { return rows_[std::size_t(thread)]; }
+  std::ptrdiff_t odd() const { return odd_; }
+  void forget();
+  std::size_t bytes() const { return storage_.size() * sizeof(T); }
+
+ private:
+  std::ptrdiff_t odd_;
+  std::vector<T> storage_;
+  std::vector<Rows> rows_;
+};
+
+struct RelaxStages {
+  bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
+};
+
+/// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p) prolongation is
+/// added first. `coarse_f`: if not null, receives the adjoint restriction of the elastic residual f − H d
+/// afterwards (curve rows: the caller's).
+template <class T>
+void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknowns<const T>* coarse_d,
+           const Unknowns<T>* coarse_f, RowScratch<T>& scratch);
+
+}  // namespace drumhead::kernels

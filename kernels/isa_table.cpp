@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Compiled once per instruction set, with DRUMHEAD_ISA_NAMESPACE and DRUMHEAD_ISA_LEVEL set by the build:
+// 0 scalar (auto-vectoriser off), 1 SSE2, 2 AVX2, 3 AVX-512.
+#include "energy_body.h"
+#include "kernel_table.h"
+#include "reduce_body.h"
+#include "relax_body.h"
+#include "transfer_body.h"
+
+namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
+
+template <class T>
+constexpr KernelTable<T> make_table() {
+  return {
+      .apply_nodes = linear_nodes_row<false, T>,
+      .apply_cells = linear_cells_row<false, T>,
+      .residual_nodes = linear_nodes_row<true, T>,
+      .residual_cells = linear_cells_row<true, T>,
+      .force_nodes = force_nodes_row<T>,
+      .force_cells = force_cells_row<T>,
+      .energy = energy_row<T>,
+      .relax_nodes = relax_nodes_row<T>,
+      .relax_volume = relax_volume_row<T>,
+      .prolong_nodes = prolong_nodes_row<false, T>,
+      .add_prolonged_nodes = prolong_nodes_row<true, T>,
+      .restrict_nodes = restrict_nodes_row<T>,
+      .inject_nodes = inject_nodes_row<T>,
+      .prolong_cells = prolong_cells_row<T>,
+      .sum_cells = gather_cells_row<false, T>,
+      .mean_cells = gather_cells_row<true, T>,
+      .interpolate_cells = interpolate_cells_row<T>,
+      .dot = dot_row<T>,
+      .largest = largest_row<T>,
+      .combine = combine_row<T>,
+  };
+}
+
+extern const KernelTable<float> float_table = make_table<float>();
+extern const KernelTable<double> double_table = make_table<double>();
+
+}  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The row kernels of one instruction set. isa_table.cpp fills one table per instruction set and number type;
+// the public functions call through the table that was chosen for this processor.
+#include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/views.h>
+
+namespace drumhead::kernels {
+
+template <class T>
+struct KernelTable {
+  using Fields = Unknowns<T>;
+  using ConstFields = Unknowns<const T>;
+  using Row = SplitRow<T>;
+  using ConstRow = SplitRow<const T>;
+
+  void (*apply_nodes)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, Row, int j);
+  void (*apply_cells)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, int j);
+  void (*residual_nodes)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, Row, int j);
+  void (*residual_cells)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, int j);
+  void (*force_nodes)(const Membrane<T>&, const Fields& out, int j);
+  void (*force_cells)(const Membrane<T>&, const Fields& out, int j);
+  void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved, EnergySums&, int j);
+
+  void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
+  void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity, int j);
+
+  void (*prolong_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
+  void (*add_prolonged_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
+  void (*restrict_nodes)(const ConstRow& below, const ConstRow& middle, const ConstRow* above,
+                         int fine_columns, const Plane<T>& coarse, int j);
+  void (*inject_nodes)(const Plane<const T>& fine, const Plane<T>& coarse, int j);
+  void (*prolong_cells)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
+  void (*sum_cells)(const ConstRow& below, const ConstRow* above, int fine_columns,
+                    const Plane<T>& coarse, int j);
+  void (*mean_cells)(const ConstRow& below, const ConstRow* above, int fine_columns,
+                     const Plane<T>& coarse, int j);
+  void (*interpolate_cells)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
+
+  double (*dot)(const Plane<const T>& a, const Plane<const T>& b, int j);
+  double (*largest)(const Plane<const T>& a, int j);
+  void (*combine)(T a, const Plane<const T>& x, T b, const Plane<T>& y, int j);
+};
+
+/// The table of the instruction set in use.
+template <class T>
+const KernelTable<T>& table();
+
+#define DRUMHEAD_DECLARE_TABLES(isa) \
+  namespace isa {                    \
+  extern const KernelTable<float> float_table;   \
+  extern const KernelTable<double> double_table; \
+  }
+DRUMHEAD_DECLARE_TABLES(scalar)
+DRUMHEAD_DECLARE_TABLES(sse2)
+DRUMHEAD_DECLARE_TABLES(avx2)
+DRUMHEAD_DECLARE_TABLES(avx512)
+#undef DRUMHEAD_DECLARE_TABLES
+
+}  // namespace drumhead::kernels

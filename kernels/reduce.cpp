@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/kernels/reduce.h>
+
+#include <vector>
+
+#include "kernel_table.h"
+#include "parallel.h"
+
+namespace drumhead::kernels {
+
+template <class T>
+double dot(const Plane<const T>& a, const Plane<const T>& b) {
+  if (!a) return 0.0;
+  const KernelTable<T>& kernels = table<T>();
+  std::vector<double> of_row(static_cast<std::size_t>(a.rows));
+  for_rows(0, a.rows, a.columns, [&](int j) { of_row[std::size_t(j)] = kernels.dot(a, b, j); });
+  double sum = 0.0;
+  for (const double row : of_row) sum += row;
+  return sum;
+}
+
+template <class T>
+double dot(const Unknowns<const T>& a, const Unknowns<const T>& b) {
+  return dot(a.x, b.x) + dot(a.y, b.y) + dot(a.p, b.p);
+}
+
+template <class T>
+double largest(const Plane<const T>& a) {
+  const KernelTable<T>& kernels = table<T>();
+  std::vector<double> of_row(static_cast<std::size_t>(a.rows));
+  for_rows(0, a.rows, a.columns, [&](int j) { of_row[std::size_t(j)] = kernels.largest(a, j); });
+  double most = 0.0;
+  for (const double row : of_row) most = row <= most ? most : row;
+  return most;
+}
+
+template <class T>
+void combine(T a, const Plane<const T>& x, T b, const Plane<T>& y) {
+  if (!x) return;
+  const KernelTable<T>& kernels = table<T>();
+  for_rows(0, x.rows, x.columns, [&](int j) { kernels.combine(a, x, b, y, j); });
+}
+
+template <class T>
+void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y) {
+  combine(a, x.x, b, y.x);
+  combine(a, x.y, b, y.y);
+  combine(a, x.p, b, y.p);
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                             \
+  template double dot(const Plane<const T>&, const Plane<const T>&);        \
+  template double dot(const Unknowns<const T>&, const Unknowns<const T>&);  \
+  template double largest(const Plane<const T>&);                           \
+  template void combine(T, const Plane<const T>&, T, const Plane<T>&);      \
+  template void combine(T, const Unknowns<const T>&, T, const Unknowns<T>&);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::kernels

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Row sums and vector updates over whole fields.
+#include "batch.h"
+#include "sums.h"
+#include <drumhead/kernels/views.h>
+
+namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
+
+template <class T>
+double dot_row(const Plane<const T>& a, const Plane<const T>& b, int j) {
+  Sixteen sums;
+  for (int parity = 0; parity < 2; ++parity)
+    sums.add_products(a.half(j, parity), b.half(j, parity), half_count(a.columns, parity));
+  return sums.total();
+}
+
+template <class T>
+double largest_row(const Plane<const T>& a, int j) {
+  T largest = T(0);
+  for (int parity = 0; parity < 2; ++parity) {
+    const T* values = a.half(j, parity);
+    for (int k = 0; k < half_count(a.columns, parity); ++k) {
+      const T size = magnitude(values[k]);
+      // A NaN must not hide behind a comparison that is false.
+      largest = size <= largest ? largest : size;
+    }
+  }
+  return double(largest);
+}
+
+/// y = a x + b y; b = 0 does not read y.
+template <class T>
+void combine_row(T a, const Plane<const T>& x, T b, const Plane<T>& y, int j) {
+  for (int parity = 0; parity < 2; ++parity) {
+    const T* in = x.half(j, parity);
+    T* out = y.half(j, parity);
+    const int count = half_count(x.columns, parity);
+    if (b == T(0)) {
+      for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
+        lane.store(decltype(zero)(a) * lane.load(in + k), out + k);
+      });
+    } else {
+      for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
+        using B = decltype(zero);
+        lane.store(B(a) * lane.load(in + k) + B(b) * lane.load(out + k), out + k);
+      });
+    }
+  }
+}
+
+}  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/kernels/relax.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "kernel_table.h"
+#include "parallel.h"
+
+namespace drumhead::kernels {
+
+template <class T>
+RowScratch<T>::RowScratch(int columns, int threads)
+    : odd_(((columns + 1) / 2 + 15) / 16 * 16),
+      storage_(std::size_t(threads) * 10 * 2 * std::size_t(odd_)),
+      rows_(std::size_t(threads)) {
+  T* at = storage_.data();
+  for (Rows& rows : rows_) {
+    for (T*& row : rows.x) row = std::exchange(at, at + 2 * odd_);
+    for (T*& row : rows.y) row = std::exchange(at, at + 2 * odd_);
+    for (T*& row : rows.p) row = std::exchange(at, at + 2 * odd_);
+  }
+}
+
+template <class T>
+void RowScratch<T>::forget() {
+  for (Rows& rows : rows_) std::fill_n(rows.held, 4, -1);
+}
+
+namespace {
+
+template <class T>
+void clear_row(const Plane<T>& plane, int j) {
+  for (int parity = 0; parity < 2; ++parity)
+    std::fill_n(plane.half(j, parity), half_count(plane.columns, parity), T(0));
+}
+
+/// Fills coarse rows from the residual of a level, called with ascending rows of each thread's chunk.
+template <class T>
+class Restriction {
+ public:
+  Restriction(const LevelSystem<T>& level, const Unknowns<T>& coarse, RowScratch<T>& scratch)
+      : level_(level), coarse_(coarse), scratch_(scratch), kernels_(table<T>()) {
+    scratch.forget();
+  }
+
+  /// After cell row j (and node rows up to j) are final: restricts what they complete.
+  void operator()(int j, int thread) {
+    const int ny = level_.d.x.rows - 1, coarse_row = j / 2;
+    if (j % 2 == 0 && j + 1 < ny) return;
+    typename RowScratch<T>::Rows& rows = scratch_.rows(thread);
+    if (coarse_row >= 1 && coarse_row < coarse_.x.rows - 1) {
+      const int middle = 2 * coarse_row;
+      const int below = hold(rows, middle - 1), centre = hold(rows, middle);
+      const bool has_above = middle + 1 < ny;
+      const int above = has_above ? hold(rows, middle + 1) : 0;
+      restrict_component(rows.x, below, centre, above, has_above, coarse_.x, coarse_row);
+      restrict_component(rows.y, below, centre, above, has_above, coarse_.y, coarse_row);
+    }
+    if (!level_.d.p) return;
+    const int first = 2 * coarse_row;
+    const bool pair = first + 1 < ny;
+    for (int n = 0; n <= int(pair); ++n)
+      kernels_.residual_cells(level_.membrane, &f_, d_, split(rows.p[n]), first + n);
+    const SplitRow<const T> upper = as_const(split(rows.p[1]));
+    kernels_.sum_cells(as_const(split(rows.p[0])), pair ? &upper : nullptr, level_.d.p.columns,
+                       coarse_.p, coarse_row);
+  }
+
+ private:
+  SplitRow<T> split(T* row) const { return {{row, row + scratch_.odd()}}; }
+  static SplitRow<const T> as_const(const SplitRow<T>& row) { return {{row.half[0], row.half[1]}}; }
+
+  /// Index of the buffer that holds residual row j, computing it if it is not there.
+  int hold(typename RowScratch<T>::Rows& rows, int j) {
+    const int slot = j & 3;
+    if (rows.held[slot] != j) {
+      kernels_.residual_nodes(level_.membrane, &f_, d_, split(rows.x[slot]), split(rows.y[slot]), j);
+      rows.held[slot] = j;
+    }
+    return slot;
+  }
+
+  void restrict_component(T* const (&buffers)[4], int below, int centre, int above, bool has_above,
+                          const Plane<T>& out, int coarse_row) const {
+    const SplitRow<const T> upper = as_const(split(buffers[above]));
+    kernels_.restrict_nodes(as_const(split(buffers[below])), as_const(split(buffers[centre])),
+                            has_above ? &upper : nullptr, level_.d.x.columns, out, coarse_row);
+  }
+
+  const LevelSystem<T>& level_;
+  const Unknowns<T>& coarse_;
+  RowScratch<T>& scratch_;
+  const KernelTable<T>& kernels_;
+  const Unknowns<const T> f_ = level_.f, d_ = level_.d;
+};
+
+/// The sweeps of one relaxation in order.
+enum class Sweep { clear, prolong, nodes, volume, cuts, nothing, restriction };
+struct Stage {
+  Sweep sweep;
+  int colour = 0;        ///< of nodes, or parity of the cell rows
+  bool reverse = false;
+};
+
+struct StageList {
+  std::array<Stage, 16> at{};
+  int count = 0;
+  void add(Stage stage) { at[std::size_t(count++)] = stage; }
+};
+
+StageList list_stages(bool clear, bool prolong, bool volume, bool cuts, bool restriction) {
+  StageList list;
+  if (clear) list.add({Sweep::clear});
+  if (prolong) list.add({Sweep::prolong});
+  for (int colour : {0, 1}) list.add({Sweep::nodes, colour});
+  for (bool reverse : {false, true}) {
+    const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
+    auto add = [&](Sweep sweep) {
+      for (int parity : rows) list.add({sweep, parity, reverse});
+    };
+    if (volume && !reverse) add(Sweep::volume);
+    if (cuts) add(Sweep::cuts);
+    if (volume && reverse) add(Sweep::volume);
+  }
+  if (restriction) {
+    // It looks three rows back: an empty stage keeps it clear of the sweep before.
+    list.add({Sweep::nothing});
+    list.add({Sweep::restriction});
+  }
+  return list;
+}
+
+}  // namespace
+
+template <class T>
+void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknowns<const T>* coarse_d,
+           const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
+  const KernelTable<T>& kernels = table<T>();
+  const Unknowns<T>& d = level.d;
+  const Unknowns<const T> f = level.f;
+  const int ny = d.x.rows - 1;
+  const StageList list = list_stages(stages.from_zero, coarse_d != nullptr, bool(d.p),
+                                     level.cuts.count > 0, coarse_f != nullptr);
+  const Unknowns<T> nowhere{};
+  Restriction<T> restriction(level, coarse_f ? *coarse_f : nowhere, scratch);
+
+  skewed_sweeps(ny, list.count, d.x.columns, [&](int s, int j, int thread) {
+    const Stage& stage = list.at[std::size_t(s)];
+    switch (stage.sweep) {
+      case Sweep::clear:
+        clear_row(d.x, j);
+        clear_row(d.y, j);
+        if (d.p) clear_row(d.p, j);
+        break;
+      case Sweep::prolong:
+        if (j > 0) {
+          kernels.add_prolonged_nodes(coarse_d->x, d.x, j);
+          kernels.add_prolonged_nodes(coarse_d->y, d.y, j);
+        }
+        if (d.p) kernels.prolong_cells(coarse_d->p, d.p, j);
+        break;
+      case Sweep::nodes:
+        if (j > 0) kernels.relax_nodes(level.membrane, f, d, stage.colour, j);
+        break;
+      case Sweep::volume:
+        if ((j & 1) != stage.colour) break;
+        kernels.relax_volume(level.membrane, f, d, int(stage.reverse), j);
+        kernels.relax_volume(level.membrane, f, d, int(!stage.reverse), j);
+        break;
+      case Sweep::cuts:
+        if ((j & 1) == stage.colour)
+          relax_cuts_row(level.membrane, level.cuts, level.fq, level.dq, d, level.f, stage.reverse, j);
+        break;
+      case Sweep::nothing: break;
+      case Sweep::restriction: restriction(j, thread); break;
+    }
+  });
+}
+
+template class RowScratch<float>;
+template class RowScratch<double>;
+template void relax(const LevelSystem<float>&, const RelaxStages&, const Unknowns<const float>*,
+                    const Unknowns<float>*, RowScratch<float>&);
+template void relax(const LevelSystem<double>&, const RelaxStages&, const Unknowns<const double>*,
+                    const Unknowns<double>*, RowScratch<double>&);
+
+}  // namespace drumhead::kernels

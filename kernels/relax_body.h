@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rows of the relaxation: red-black Gauss–Seidel on x̂ and coloured, D-weighted Kaczmarz on the volume rows.
+#include "elastic_body.h"
+
+namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
+
+/// Nodes of row j with i + j + colour even: both components of d += (f − H d)/K_ii. The components couple
+/// only across colours, so updating them together is Gauss–Seidel in the two colours.
+template <class T>
+void relax_nodes_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d, int colour,
+                     int j) {
+  with_scene(m, [&](auto pressure, auto mu_cells) {
+    const int parity = (j + colour) & 1;
+    const NodeStencil<T, pressure.value, mu_cells.value> stencil(m, d, j, parity);
+    const Range range = interior(d.x.columns, parity);
+    T *dx = d.x.half(j, parity), *dy = d.y.half(j, parity);
+    const T *fx = f.x.half(j, parity), *fy = f.y.half(j, parity);
+    for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
+      decltype(zero) hx, hy, inverse;
+      stencil.apply(lane, zero, k, hx, hy, inverse);
+      lane.store(lane.load(dx + k) + (lane.load(fx + k) - hx) * inverse, dx + k);
+      lane.store(lane.load(dy + k) + (lane.load(fy + k) - hy) * inverse, dy + k);
+    });
+  });
+}
+
+/// 1/K_ii at the four nodes of a cell; 0 on the fixed boundary.
+template <class B>
+struct CornerInverse {
+  B i00, i10, i01, i11;
+};
+
+/// One D-weighted Kaczmarz update of volume rows, B d − (A/kappa) dP = g:
+/// r = g − (B d − A/kappa dP), s = Σ B_i²/K_ii + A/kappa, d_i += B_i r/(s K_ii), dP −= r/s.
+/// `floor` keeps s positive in a cell that has collapsed to a point.
+template <class L, class B, class T>
+void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T>& x,
+                  const Corners<T>& y, const T* g, T* p, B compliance, B floor,
+                  const CornerInverse<B>& inverse, int k) {
+  B d1x, d1y, d2x, d2y;
+  stencil.cell_diagonals(lane, zero, k, d1x, d1y, d2x, d2y);
+  B x00 = lane.load(x.n00 + k), x10 = lane.load(x.n10 + k), x01 = lane.load(x.n01 + k),
+    x11 = lane.load(x.n11 + k);
+  B y00 = lane.load(y.n00 + k), y10 = lane.load(y.n10 + k), y01 = lane.load(y.n01 + k),
+    y11 = lane.load(y.n11 + k);
+  const B half(T(0.5)), quarter(T(0.25)), dp = lane.load(p + k);
+  const B product =
+      half * ((d1x * (y01 - y10) - d1y * (x01 - x10)) + ((x11 - x00) * d2y - (y11 - y00) * d2x));
+  const B r = lane.load(g + k) - (product - compliance * dp);
+  const B weight = (d2x * d2x + d2y * d2y) * (inverse.i11 + inverse.i00) +
+                   (d1x * d1x + d1y * d1y) * (inverse.i01 + inverse.i10);
+  const B t = r / (quarter * weight + compliance + floor);
+  const B v = half * t;
+  lane.store(dp - t, p + k);
+  lane.store(x11 + d2y * (v * inverse.i11), x.n11 + k);
+  lane.store(y11 - d2x * (v * inverse.i11), y.n11 + k);
+  lane.store(x00 - d2y * (v * inverse.i00), x.n00 + k);
+  lane.store(y00 + d2x * (v * inverse.i00), y.n00 + k);
+  lane.store(x01 - d1y * (v * inverse.i01), x.n01 + k);
+  lane.store(y01 + d1x * (v * inverse.i01), y.n01 + k);
+  lane.store(x10 + d1y * (v * inverse.i10), x.n10 + k);
+  lane.store(y10 - d1x * (v * inverse.i10), y.n10 + k);
+}
+
+/// Volume rows of the cells of columns 2k + parity in row j; they share no node.
+template <class T>
+void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d, int parity,
+                      int j) {
+  const CellStencil<T> stencil(m, j, parity);
+  const Corners<T> x(d.x, j, parity), y(d.y, j, parity);
+  const CellCompliance<T> compliance(m, j, parity);
+  const T* g = f.p.half(j, parity);
+  T* p = d.p.half(j, parity);
+  const int count = half_count(d.p.columns, parity);
+  const T floor = T(1e-6) * m.spacing * m.spacing / (T(4) * m.mu.value);
+  if (m.inverse_diagonal) {
+    const Corners<const T> inverse(m.inverse_diagonal, j, parity);
+    for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
+      using B = decltype(zero);
+      relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k),
+                   B(floor),
+                   {lane.load(inverse.n00 + k), lane.load(inverse.n10 + k),
+                    lane.load(inverse.n01 + k), lane.load(inverse.n11 + k)},
+                   k);
+    });
+    return;
+  }
+  const T inverse = T(1) / (T(4) * m.mu.value);
+  const T south = j > 0 ? inverse : T(0), north = j + 1 < d.p.rows ? inverse : T(0);
+  const int last = d.p.columns - 1;
+  auto columns = [&](auto lane, auto zero, int k) {
+    using B = decltype(zero);
+    relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k), B(floor),
+                 {B(south), B(south), B(north), B(north)}, k);
+  };
+  auto edge_column = [&](int k) {  // a side of the cell lies on the fixed boundary
+    const int i = 2 * k + parity;
+    const T w = T(i > 0), e = T(i < last);
+    const Lane<T> lane;
+    relax_volume(lane, T(0), stencil, x, y, g, p, compliance(lane, T(0), k), floor,
+                 {w * south, e * south, w * north, e * north}, k);
+  };
+  const int first = parity == 0 ? 1 : 0;
+  const int end = (last & 1) == parity ? count - 1 : count;
+  if (first == 1 && count > 0) edge_column(0);
+  for_lanes<T>(first, end, columns);
+  if (end < count && end >= first) edge_column(end);
+}
+
+}  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE
