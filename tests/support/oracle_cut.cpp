@@ -31,8 +31,9 @@ struct Arc {
   }
 };
 
-// The chord piece a → b, which does not cross a lattice line. The cell is that of its midpoint; a piece on
-// a lattice line goes to the cell of the larger index, which makes no difference to its weights.
+// The chord piece a → b, which does not cross a lattice line. The cell is that of its midpoint; a
+// piece on a lattice line goes to the cell of the larger index, which makes no difference to its
+// weights.
 Arc integrate(Vector2d a, Vector2d b, Vector2d target_a, Vector2d target_b, int n) {
   const Vector2d middle = 0.5 * (a + b);
   const int i = std::clamp(int(std::floor(middle.x())), 0, n - 1);
@@ -79,9 +80,9 @@ std::vector<Arc> arcs_of(const scenes::Polyline& curve, int n) {
       return Vector2d((1.0 - t) * from + t * to);
     };
     for (std::size_t m = 1; m < at.size(); ++m) {
-      const Arc arc = integrate(along(a, b, at[m - 1]), along(a, b, at[m]),
-                                along(target_a, target_b, at[m - 1]),
-                                along(target_a, target_b, at[m]), n);
+      const Arc arc =
+          integrate(along(a, b, at[m - 1]), along(a, b, at[m]),
+                    along(target_a, target_b, at[m - 1]), along(target_a, target_b, at[m]), n);
       if (arc.length == 0.0) continue;
       if (arcs.empty() || arcs.back().cell != arc.cell) {
         arcs.push_back(arc);
@@ -116,8 +117,8 @@ double interior_weight(const Arc& total, int n) {
 
 Cuts cut(const scenes::Scene& scene, int n) {
   std::map<CellIndex, Arc> totals;
-  std::vector<CellIndex> order;                         // cells as first entered
-  std::vector<std::pair<CellIndex, CellIndex>> steps;   // from cell to cell along a curve
+  std::vector<CellIndex> order;                        // cells as first entered
+  std::vector<std::pair<CellIndex, CellIndex>> steps;  // from cell to cell along a curve
   for (const scenes::Polyline& curve : scene.curves) {
     std::vector<Arc> arcs = arcs_of(curve, n);
     if (closed(curve)) join_ends(arcs);

@@ -12,8 +12,9 @@ namespace {
 
 using Eigen::VectorXd;
 constexpr double kShift = 1e-9;
-constexpr double kExact = 1e6;      // theta above which the pressure is not clamped
-constexpr double kMeritKappa = 100.0;  // km: stiffer volume terms enter the merit with this, over mu
+constexpr double kExact = 1e6;  // theta above which the pressure is not clamped
+constexpr double kMeritKappa =
+    100.0;  // km: stiffer volume terms enter the merit with this, over mu
 
 double median(const VectorXd& values) {
   std::vector<double> sorted(values.begin(), values.end());
@@ -22,8 +23,8 @@ double median(const VectorXd& values) {
   return *middle;
 }
 
-// P_H = clamp(P − median P, ±theta mu), in every cell: a pressure that is constant over all cells has no
-// second derivative, over some of them it has.
+// P_H = clamp(P − median P, ±theta mu), in every cell: a pressure that is constant over all cells
+// has no second derivative, over some of them it has.
 VectorXd clamped_pressure(const OracleScene& scene, const VectorXd& P, double theta) {
   if (theta > kExact) return P;
   VectorXd result = P.array() - median(P);
@@ -34,29 +35,29 @@ VectorXd clamped_pressure(const OracleScene& scene, const VectorXd& P, double th
   return result;
 }
 
-// E_el(x) + sum A [P⁺c + km/2 c²] + nu sum len |r|₁ or, where the rows are soft and there is no jump,
-// sum d len/2 |b − W x|²; c = J* − 1 − P⁺/kappa, r = b − W x − M q⁺ with the multipliers of the full step.
+// E_el(x) + sum A [P⁺c + km/2 c²] + nu sum len |r|₁ or, where the rows are soft and there is no
+// jump, sum d len/2 |b − W x|²; c = J* − 1 − P⁺/kappa, r = b − W x − M q⁺ with the multipliers of
+// the full step.
 class Merit {
  public:
   Merit(const OracleScene& scene, const State& full_step) : scene_(scene), P_(full_step.P) {
     Mq_ = softness_times(scene, full_step.q);
     double traction = 0.0;
     for (std::size_t r = 0; r < scene.cuts.rows.size(); ++r) {
-      traction = std::max(traction, full_step.q.segment<2>(2 * Eigen::Index(r)).norm() /
-                                        scene.cuts.rows[r].length);
+      traction = std::max(
+          traction, full_step.q.segment<2>(2 * Eigen::Index(r)).norm() / scene.cuts.rows[r].length);
     }
     nu_ = 1.5 * traction;
   }
 
   double operator()(const State& state) const {
     const double cells = double(scene_.n) * scene_.n;
-    const Energies primal = energies(scene_, state);
-    double sum = cells * primal.elastic;
+    double sum = cells * energies(scene_, state).elastic;
     for (int j = 0; j < scene_.n; ++j) {
       for (int i = 0; i < scene_.n; ++i) sum += volume(state, i, j);
     }
     const bool hard = std::isinf(scene_.options.weight) || scene_.options.jump > 0.0;
-    if (!hard) return sum + cells * primal.constraint;
+    if (!hard) return sum + spring_energy(scene_, state);
     const VectorXd r = curve_gap(scene_, state) - Mq_;
     for (std::size_t k = 0; k < scene_.cuts.rows.size(); ++k) {
       sum += nu_ * scene_.cuts.rows[k].length * r.segment<2>(2 * Eigen::Index(k)).lpNorm<1>();
@@ -82,7 +83,8 @@ class Merit {
   double nu_ = 0.0;
 };
 
-// Halves t from 1 until the merit falls; 0 when it never does. A change within rounding counts as a fall.
+// Halves t from 1 until the merit falls; 0 when it never does. A change within rounding counts as a
+// fall.
 double line_search(const OracleScene& scene, const State& state, const VectorXd& step,
                    double& merit_now) {
   const State full = moved(scene, state, step, 1.0);

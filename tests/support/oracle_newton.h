@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Newton's method on the oracle's assembled system, with a direct sparse factorisation: the same schedule
-// of clamped pressures as the solver, so that both find the same minimum, and nothing else in common.
+// Newton's method on the oracle's assembled system, with a direct sparse factorisation: the same
+// schedule of clamped pressures as the solver, so that both find the same minimum, and nothing else
+// in common.
 #include <optional>
 #include <vector>
 
@@ -33,9 +34,9 @@ State harmonic(const OracleScene& scene);
 OracleResult newton(const OracleScene& scene, const std::optional<State>& start = {},
                     const NewtonOptions& options = {});
 
-/// Solves matrix · step = right side for a symmetric indefinite matrix that may be (consistently) singular
-/// in its P and q blocks: those are shifted by −1e-9 for the factorisation and the shift is refined away.
-/// `first_multiplier`: index of the first P. Returns the relative residual left.
+/// Solves matrix · step = right side for a symmetric indefinite matrix that may be (consistently)
+/// singular in its P and q blocks: those are shifted by −1e-9 for the factorisation and the shift
+/// is refined away. `first_multiplier`: index of the first P. Returns the relative residual left.
 double solve(const Eigen::SparseMatrix<double>& matrix, const Eigen::VectorXd& right,
              int first_multiplier, Eigen::VectorXd& step);
 

@@ -12,14 +12,14 @@ using Eigen::Vector2d;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
 
-// Corners in the order 00, 10, 01, 11. The elastic energy of a cell is mu/2 X'SX + mu/2 Y'SY with S the
-// Laplacian of the cell's four edges, each of weight ½; J* = X'ZY with Z = (e f' − f e')/2.
+// Corners in the order 00, 10, 01, 11. The elastic energy of a cell is mu/2 X'SX + mu/2 Y'SY with S
+// the Laplacian of the cell's four edges, each of weight ½; J* = X'ZY with Z = (e f' − f e')/2.
 Matrix4d edge_laplacian() {
   Matrix4d S;
-  S << 1.0, -.5, -.5, 0.0,
-       -.5, 1.0, 0.0, -.5,
-       -.5, 0.0, 1.0, -.5,
-       0.0, -.5, -.5, 1.0;
+  S << 1.0, -.5, -.5, 0.0,  // row by row
+      -.5, 1.0, 0.0, -.5,   //
+      -.5, 0.0, 1.0, -.5,   //
+      0.0, -.5, -.5, 1.0;
   return S;
 }
 Matrix4d area_form() {
@@ -56,8 +56,8 @@ double softness(const OracleScene& scene, const CutRow& row) {
   return inverse(scene.options.weight / scene.n * row.length);
 }
 
-// The q block M as triplets of rows (the same for both axes): 1/(d len) on the diagonal, and for each pair
-// qs/mu min(len)² times the square of the difference of q/len.
+// The q block M as triplets of rows (the same for both axes): 1/(d len) on the diagonal, and for
+// each pair qs/mu min(len)² times the square of the difference of q/len.
 std::vector<Eigen::Triplet<double>> softness_triplets(const OracleScene& scene) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto& rows = scene.cuts.rows;
@@ -231,8 +231,8 @@ double lagrangian(const OracleScene& scene, const State& state) {
     };
     sum += scene.mu[cell] / 4.0 * (edge2(1, 0) + edge2(3, 2) + edge2(2, 0) + edge2(3, 1));
     if (scene.cell_unknown[cell] >= 0) {
-      const double area = 0.5 * ((c.X[3] - c.X[0]) * (c.Y[2] - c.Y[1]) -
-                                 (c.Y[3] - c.Y[0]) * (c.X[2] - c.X[1]));
+      const double area =
+          0.5 * ((c.X[3] - c.X[0]) * (c.Y[2] - c.Y[1]) - (c.Y[3] - c.Y[0]) * (c.X[2] - c.X[1]));
       sum += P * (area - 1.0) - 0.5 * P * P * inverse(scene.kappa[cell]);
     }
   });
@@ -297,6 +297,17 @@ OracleSystem assemble(const OracleScene& scene, const State& state, const Vector
   return {assembly.matrix(), gradient(scene, state)};
 }
 
+double spring_energy(const OracleScene& scene, const State& state) {
+  if (std::isinf(scene.options.weight)) return 0.0;
+  const VectorXd gap = curve_gap(scene, state);
+  double sum = 0.0;
+  for (std::size_t r = 0; r < scene.cuts.rows.size(); ++r) {
+    sum += gap.segment<2>(2 * Eigen::Index(r)).squaredNorm() /
+           (2.0 * softness(scene, scene.cuts.rows[r]));
+  }
+  return sum;
+}
+
 Energies energies(const OracleScene& scene, const State& state) {
   Energies sums;
   const Matrix4d S = edge_laplacian();
@@ -307,12 +318,9 @@ Energies energies(const OracleScene& scene, const State& state) {
       sums.volume += 0.5 * scene.kappa[cell] * std::pow(centre_J(scene, state, i, j) - 1.0, 2);
     }
   });
-  const VectorXd gap = curve_gap(scene, state);
   for (std::size_t r = 0; r < scene.cuts.rows.size(); ++r) {
-    const double soft = softness(scene, scene.cuts.rows[r]);
-    if (soft > 0.0) {
-      sums.constraint += gap.segment<2>(2 * Eigen::Index(r)).squaredNorm() / (2.0 * soft);
-    }
+    sums.constraint += 0.5 * softness(scene, scene.cuts.rows[r]) *
+                       state.q.segment<2>(2 * Eigen::Index(r)).squaredNorm();
   }
   const double cells = double(scene.n) * scene.n;
   return {sums.elastic / cells, sums.volume / cells, sums.constraint / cells};

@@ -19,7 +19,8 @@ Vector2d circle_point(Vector2d centre, double radius, double angle) {
   return centre + radius * Vector2d(std::cos(angle), std::sin(angle));
 }
 
-// A circle carried to the circle of the same radius about `target_centre`, turned by `turn` radians.
+// A circle carried to the circle of the same radius about `target_centre`, turned by `turn`
+// radians.
 Polyline circle(std::string name, Vector2d centre, Vector2d target_centre, double radius,
                 double turn = 0.0, int chords = kCircleChords) {
   Polyline curve{std::move(name), {}, {}, turn * (180.0 / kPi)};
@@ -49,9 +50,8 @@ Vector2d centre_of_square(double offset) { return {0.5 + offset, 0.5 + 0.7 * off
 
 Scene sponge(double offset) {
   const auto segment = [=](double x, double bulge) -> Path {
-    return [=](double s) {
-      return Vector2d(x + offset + bulge * std::sin(kPi * s), 0.25 + 0.5 * s);
-    };
+    return
+        [=](double s) { return Vector2d(x + offset + bulge * std::sin(kPi * s), 0.25 + 0.5 * s); };
   };
   return {"S1",
           {open_curve("left", segment(0.35, 0.0), segment(0.20, -0.05)),
@@ -101,14 +101,25 @@ Scene fold(double offset) {
 }
 
 Scene many_discs() {
-  const std::array<Vector2d, 8> from{{{.25, .30}, {.40, .30}, {.55, .30}, {.35, .60},
-                                      {.60, .60}, {.75, .65}, {.50, .80}, {.50, .45}}};
-  const std::array<Vector2d, 8> to{{{.15, .50}, {.60, .18}, {.80, .42}, {.20, .80},
-                                    {.45, .66}, {.82, .80}, {.55, .88}, {.38, .36}}};
+  const std::array<Vector2d, 8> from{{{.25, .30},
+                                      {.40, .30},
+                                      {.55, .30},
+                                      {.35, .60},
+                                      {.60, .60},
+                                      {.75, .65},
+                                      {.50, .80},
+                                      {.50, .45}}};
+  const std::array<Vector2d, 8> to{{{.15, .50},
+                                    {.60, .18},
+                                    {.80, .42},
+                                    {.20, .80},
+                                    {.45, .66},
+                                    {.82, .80},
+                                    {.55, .88},
+                                    {.38, .36}}};
   Scene scene{"ML", {}, {}};
   for (std::size_t k = 0; k < from.size(); ++k) {
-    scene.curves.push_back(
-        circle("disc " + std::to_string(k), from[k], to[k], 0.025, 0.0, 360));
+    scene.curves.push_back(circle("disc " + std::to_string(k), from[k], to[k], 0.025, 0.0, 360));
   }
   return scene;
 }
@@ -134,34 +145,6 @@ std::vector<double> kappa_cells(const Scene& scene, int n, double kappa) {
     }
   }
   return cells;
-}
-
-multigrid::WarpProblem problem(const Scene& scene, int n, double kappa) {
-  multigrid::WarpProblem problem;
-  problem.lattice = {n, n, 1.0 / n, {0.0, 0.0}, 1.0};
-  problem.material.mu = 1.0;
-  problem.material.kappa = kappa;
-  if (scene.kappa_mask) {
-    for (const double cell : kappa_cells(scene, n, kappa)) {
-      problem.material.kappa_cells.push_back(float(cell));
-    }
-  }
-  const auto chords = [](const std::vector<Vector2d>& points) {
-    std::vector<grid::CubicBezier> chain;
-    for (std::size_t k = 1; k < points.size(); ++k) {
-      chain.push_back(grid::straight({points[k - 1].x(), points[k - 1].y()},
-                                     {points[k].x(), points[k].y()}));
-    }
-    return chain;
-  };
-  for (const Polyline& line : scene.curves) {
-    grid::CurvePair pair;
-    pair.name = line.name;
-    pair.source = chords(line.source);
-    pair.target = chords(line.target);
-    problem.curves.push_back(std::move(pair));
-  }
-  return problem;
 }
 
 }  // namespace drumhead::scenes

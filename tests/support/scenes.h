@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The study scenes: curve pairs on the unit square whose solutions are known (S1 sponge, S2 roundabout,
-// S3 pinch, S4 shift, S5 fold) and the two many-disc scenes ML and ML2. The margin is 0: the square's edge
-// is fixed. Curves are polylines, circles of 2880 chords, segments and arcs of 2000: smooth curves would
-// change the fifth digit of the reference energies.
+// The study scenes: curve pairs on the unit square whose solutions are known (S1 sponge, S2
+// roundabout, S3 pinch, S4 shift, S5 fold) and the two many-disc scenes ML and ML2. The margin is
+// 0: the square's edge is fixed. Curves are polylines, circles of 2880 chords, segments and arcs of
+// 2000: smooth curves would change the fifth digit of the reference energies.
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include <drumhead/multigrid/warp.h>
 
 namespace drumhead::scenes {
 
@@ -18,18 +16,21 @@ namespace drumhead::scenes {
 struct Polyline {
   std::string name;
   std::vector<Eigen::Vector2d> source, target;
-  double turn_degrees = 0.0;  ///< clockwise on the screen (y down), for rotations beyond 180 degrees
+  double turn_degrees =
+      0.0;  ///< clockwise on the screen (y down), for rotations beyond 180 degrees
 };
 
 struct Scene {
   std::string name;
   std::vector<Polyline> curves;
-  /// kappa/mu at a cell centre of the unit square; empty: one value everywhere, chosen by the caller.
+  /// kappa/mu at a cell centre of the unit square; empty: one value everywhere, chosen by the
+  /// caller.
   std::function<double(double x, double y)> kappa_mask;
 };
 
-// `offset` moves circle centres (and S3's disc) by (offset, .7 offset) and segments by offset in x, source
-// and target alike. The reference energies hold at 0; .00317 keeps curves clear of lattice lines at every n.
+// `offset` moves circle centres (and S3's disc) by (offset, .7 offset) and segments by offset in x,
+// source and target alike. The reference energies hold at 0; .00317 keeps curves clear of lattice
+// lines at every n.
 inline constexpr double kStudyOffset = 0.00317;
 
 /// S1: two vertical segments pulled apart and bent.
@@ -49,9 +50,5 @@ Scene turning_discs();
 
 /// kappa/mu of every cell of an n × n lattice, i fastest.
 std::vector<double> kappa_cells(const Scene& scene, int n, double kappa);
-
-/// The scene as the solver takes it: n × n cells of side 1/n, mu 1, polylines as straight Béziers. `kappa`
-/// is ignored where the scene has a mask.
-multigrid::WarpProblem problem(const Scene& scene, int n, double kappa);
 
 }  // namespace drumhead::scenes

@@ -1,0 +1,25 @@
+# The assembled oracle, its own tests, and the tests of the whole solver against it.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+
+add_library(drumhead_oracle STATIC
+  support/scenes.cpp support/oracle_cut.cpp support/oracle_system.cpp support/oracle_newton.cpp
+  support/oracle_relax.cpp)
+target_include_directories(drumhead_oracle PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+target_compile_features(drumhead_oracle PUBLIC cxx_std_20)
+# Eigen's sparse factorisation is some fifty times slower without the optimiser; assertions stay on in debug.
+target_compile_options(drumhead_oracle PRIVATE -Wall -Wextra -O2)
+set_target_properties(drumhead_oracle PROPERTIES CXX_EXTENSIONS OFF)
+target_link_libraries(drumhead_oracle PUBLIC Eigen3::Eigen)
+
+foreach(name system cut)
+  drumhead_test(NAME oracle_${name}_test SOURCES oracle_${name}_test.cpp LINK drumhead_oracle LABEL unit)
+endforeach()
+drumhead_test(NAME oracle_energy_test SOURCES oracle_energy_test.cpp LINK drumhead_oracle LABEL numeric)
+
+if(TARGET drumhead::multigrid)
+  foreach(name exact default nested)
+    drumhead_test(NAME stability_${name}_test
+      SOURCES stability_${name}_test.cpp support/scene_problem.cpp
+      LINK drumhead_oracle drumhead::multigrid LABEL numeric)
+  endforeach()
+endif()
