@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/grid/cut_cells.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "crossings.h"
+#include "quadrature.h"
+
+namespace drumhead::grid {
+namespace {
+
+constexpr double kShortestStay = 1e-3;     // cells
+constexpr double kLeastInterior = 0.02;    // of a row's weight
+constexpr double kQuadrature = 1e-10;      // relative
+
+/// ∫ over an arc inside one cell of 1, the bilinear weights and target − source.
+struct Integral {
+  double length = 0.0;
+  std::array<double, 4> weight{};
+  Point wanted;
+  double stiffness = 0.0;  // Σ d len, infinite for a hard curve
+  void add(const Integral& other) {
+    length += other.length;
+    for (int n = 0; n < 4; ++n) weight[std::size_t(n)] += other.weight[std::size_t(n)];
+    wanted = wanted + other.wanted;
+    stiffness += other.stiffness;
+  }
+};
+
+struct Cell {
+  int i = -1, j = -1;
+  friend bool operator==(const Cell&, const Cell&) = default;
+};
+
+/// A curve's uninterrupted stay in one cell.
+struct Stay {
+  Cell cell;
+  Integral integral;
+};
+
+Integral gauss(const SegmentPair& pair, Cell cell, double t0, double t1) {
+  Integral sum;
+  for_gauss_points(t0, t1, [&](double t, double weight) {
+    const Point s = pair.source.at(t), target = pair.target.at(t);
+    const double ds = weight * length(pair.source.derivative(t));
+    const double x = s.x - cell.i, y = s.y - cell.j;
+    sum.length += ds;
+    const std::array<double, 4> n{(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+    for (std::size_t c = 0; c < 4; ++c) sum.weight[c] += ds * n[c];
+    sum.wanted = sum.wanted + ds * (target - s);
+  });
+  return sum;
+}
+
+/// Halves the arc until the eight-point rule has converged; a straight arc of constant speed has at once.
+Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, const Integral& whole,
+                   int depth) {
+  const double middle = 0.5 * (t0 + t1);
+  const Integral left = gauss(pair, cell, t0, middle), right = gauss(pair, cell, middle, t1);
+  Integral sum = left;
+  sum.add(right);
+  if (depth == 0 || std::abs(sum.length - whole.length) <= kQuadrature * whole.length) return sum;
+  sum = integrate(pair, cell, t0, middle, left, depth - 1);
+  sum.add(integrate(pair, cell, middle, t1, right, depth - 1));
+  return sum;
+}
+
+bool constant_speed(const CubicBezier& curve) {
+  const auto& p = curve.control;
+  const Point a = p[1] - p[0], b = p[2] - p[1], c = p[3] - p[2];
+  const double tiny = 1e-13 * (length(a) + length(b) + length(c));
+  return length(b - a) <= tiny && length(c - b) <= tiny;
+}
+
+/// Cell index of a coordinate: points on a line belong to the cell of larger index.
+int cell_index(double x, int n) {
+  const double nearest = std::round(x);
+  const double snapped = std::abs(x - nearest) < kSnap ? nearest : std::floor(x);
+  return std::clamp(int(snapped), 0, n - 1);
+}
+
+[[noreturn]] void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice) {
+  const Point px = lattice.origin_px + lattice.cell_px * cells;
+  const Point end = lattice.rest_px(lattice.nx, lattice.ny);
+  auto text = [](Point p) {
+    return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")";
+  };
+  throw std::invalid_argument("curve '" + curve.name + "': the source leaves the lattice at " + text(px) +
+                              " px; it reaches from " + text(lattice.origin_px) + " to " + text(end));
+}
+
+class Cutter {
+ public:
+  Cutter(const Lattice& lattice, double most_weight) : lattice_(lattice), most_weight_(most_weight) {}
+
+  void add(const CurvePair& curve) {
+    std::vector<SegmentPair> segments = matched(curve);
+    for (SegmentPair& pair : segments)
+      for (int n = 0; n < 4; ++n) {
+        Point& s = pair.source.control[std::size_t(n)];
+        Point& t = pair.target.control[std::size_t(n)];
+        s = lattice_.to_cells(s);
+        t = lattice_.to_cells(t);
+      }
+    std::vector<Stay> stays;
+    std::vector<double> crossings;
+    for (const SegmentPair& pair : segments) add_segment(curve, pair, crossings, stays);
+    const Point gap = segments.front().source.at(0.0) - segments.back().source.at(1.0);
+    keep(stays, length(gap) < 1e-6, std::min(curve.weight, most_weight_));
+  }
+
+  CutCells finish();
+
+ private:
+  void add_segment(const CurvePair& curve, const SegmentPair& pair, std::vector<double>& crossings,
+                   std::vector<Stay>& stays) const {
+    find_crossings(pair.source, crossings);
+    crossings.push_back(1.0);
+    const bool simple = constant_speed(pair.source) && constant_speed(pair.target);
+    double t0 = 0.0;
+    for (const double t1 : crossings) {
+      if (t1 <= t0) continue;
+      const Point middle = pair.source.at(0.5 * (t0 + t1));
+      if (middle.x < -kSnap || middle.y < -kSnap || middle.x > lattice_.nx + kSnap ||
+          middle.y > lattice_.ny + kSnap)
+        refuse_outside(curve, middle, lattice_);
+      const Cell cell{cell_index(middle.x, lattice_.nx), cell_index(middle.y, lattice_.ny)};
+      Integral arc = gauss(pair, cell, t0, t1);
+      if (!simple) arc = integrate(pair, cell, t0, t1, arc, 20);
+      if (stays.empty() || !(stays.back().cell == cell)) stays.push_back({cell, {}});
+      stays.back().integral.add(arc);
+      t0 = t1;
+    }
+  }
+
+  /// Drops stays that are too short, notes which cells follow one another, and files the rest.
+  void keep(std::vector<Stay>& stays, bool closed, double weight) {
+    if (closed && stays.size() > 1 && stays.front().cell == stays.back().cell) {
+      stays.front().integral.add(stays.back().integral);
+      stays.pop_back();
+    }
+    std::erase_if(stays, [](const Stay& s) { return s.integral.length < kShortestStay; });
+    // d in mu per side_px becomes mu per cell.
+    const double stiffness = weight * lattice_.cell_px / lattice_.side_px;
+    for (Stay& stay : stays) stay.integral.stiffness = stiffness * stay.integral.length;
+    auto follow = [&](const Stay& a, const Stay& b) {
+      if (!(a.cell == b.cell)) followers_.push_back({index(a.cell), index(b.cell)});
+    };
+    for (std::size_t n = 0; n + 1 < stays.size(); ++n) follow(stays[n], stays[n + 1]);
+    if (closed && stays.size() > 2) follow(stays.back(), stays.front());
+    stays_.insert(stays_.end(), stays.begin(), stays.end());
+  }
+
+  std::ptrdiff_t index(Cell cell) const { return std::ptrdiff_t(cell.j) * lattice_.nx + cell.i; }
+
+  const Lattice& lattice_;
+  double most_weight_;
+  std::vector<Stay> stays_;
+  std::vector<std::array<std::ptrdiff_t, 2>> followers_;
+};
+
+/// Zeroes the weights of nodes on the fixed boundary; returns what is left.
+double keep_interior(std::array<double, 4>& weight, int i, int j, int nx, int ny) {
+  double sum = 0.0;
+  for (int n = 0; n < 4; ++n) {
+    const int x = i + (n & 1), y = j + (n >> 1);
+    if (x == 0 || x == nx || y == 0 || y == ny) weight[std::size_t(n)] = 0.0;
+    sum += weight[std::size_t(n)];
+  }
+  return sum;
+}
+
+/// Unique symmetric links from pairs of cuts.
+void set_links(CutCells& cuts, std::vector<std::array<int, 2>>& pairs) {
+  const std::size_t given = pairs.size();
+  for (std::size_t n = 0; n < given; ++n) pairs.push_back({pairs[n][1], pairs[n][0]});
+  std::ranges::sort(pairs);
+  const auto repeated = std::ranges::unique(pairs);
+  pairs.erase(repeated.begin(), repeated.end());
+  cuts.link_begin.assign(std::size_t(cuts.size()) + 1, 0);
+  for (const auto& [k, l] : pairs) {
+    ++cuts.link_begin[std::size_t(k) + 1];
+    cuts.link.push_back(l);
+  }
+  for (std::size_t k = 0; k < std::size_t(cuts.size()); ++k) cuts.link_begin[k + 1] += cuts.link_begin[k];
+}
+
+CutCells Cutter::finish() {
+  std::ranges::stable_sort(stays_, {}, [&](const Stay& s) { return index(s.cell); });
+  CutCells cuts;
+  cuts.row_begin.assign(std::size_t(lattice_.ny) + 1, 0);
+  std::vector<std::ptrdiff_t> kept;
+  for (std::size_t n = 0; n < stays_.size();) {
+    const Cell cell = stays_[n].cell;
+    Integral sum;
+    for (; n < stays_.size() && stays_[n].cell == cell; ++n) sum.add(stays_[n].integral);
+    for (double& w : sum.weight) w /= sum.length;
+    if (keep_interior(sum.weight, cell.i, cell.j, lattice_.nx, lattice_.ny) < kLeastInterior) continue;
+    cuts.column.push_back(cell.i);
+    cuts.weight.push_back(sum.weight);
+    cuts.length.push_back(sum.length);
+    cuts.wanted.push_back((1.0 / sum.length) * sum.wanted);
+    cuts.compliance.push_back(std::isinf(sum.stiffness) ? 0.0 : 1.0 / sum.stiffness);
+    ++cuts.row_begin[std::size_t(cell.j) + 1];
+    kept.push_back(index(cell));
+  }
+  for (std::size_t j = 0; j < std::size_t(lattice_.ny); ++j) cuts.row_begin[j + 1] += cuts.row_begin[j];
+  std::vector<std::array<int, 2>> pairs;
+  auto find = [&](std::ptrdiff_t cell) {
+    const auto at = std::ranges::lower_bound(kept, cell);
+    return at != kept.end() && *at == cell ? int(at - kept.begin()) : -1;
+  };
+  for (const auto& [a, b] : followers_) {
+    const int k = find(a), l = find(b);
+    if (k >= 0 && l >= 0) pairs.push_back({k, l});
+  }
+  set_links(cuts, pairs);
+  return cuts;
+}
+
+}  // namespace
+
+CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, double most_weight) {
+  Cutter cutter(lattice, most_weight);
+  for (const CurvePair& curve : curves) {
+    if (!(curve.weight > 0.0))
+      throw std::invalid_argument("curve '" + curve.name + "': weight = " + std::to_string(curve.weight) +
+                                  ": must be positive (infinity allowed)");
+    cutter.add(curve);
+  }
+  return cutter.finish();
+}
+
+CoarseCuts coarsen(const CutCells& fine, int nx, int ny) {
+  const int coarse_nx = coarse_cells(nx), coarse_ny = coarse_cells(ny);
+  CoarseCuts out;
+  out.parent.assign(std::size_t(fine.size()), -1);
+  out.share.assign(std::size_t(fine.size()), 0.0);
+  CutCells& cuts = out.cuts;
+  cuts.row_begin.assign(std::size_t(coarse_ny) + 1, 0);
+  for (int j = 0; j < coarse_ny; ++j) {
+    // Children of this row in order of their parents' columns.
+    std::vector<std::array<int, 3>> children;  // parent column, cut, fine row
+    for (int row = 2 * j; row < std::min(2 * j + 2, ny); ++row)
+      for (int k = fine.row_begin[std::size_t(row)]; k < fine.row_begin[std::size_t(row) + 1]; ++k)
+        children.push_back({fine.column[std::size_t(k)] / 2, k, row});
+    std::ranges::sort(children);
+    for (std::size_t n = 0; n < children.size();) {
+      const std::size_t first = n;
+      const int i = children[n][0];
+      double length = 0.0, compliance = 0.0;
+      Point wanted;
+      std::array<double, 4> weight{};
+      for (; n < children.size() && children[n][0] == i; ++n) {
+        const std::size_t k = std::size_t(children[n][1]);
+        const int a = fine.column[k] & 1, b = children[n][2] & 1;
+        const double len = fine.length[k];
+        length += len;
+        wanted = wanted + len * fine.wanted[k];
+        compliance += len * len * fine.compliance[k];
+        for (int c = 0; c < 4; ++c) {  // the child's corners at quarters of the parent
+          const double x = 0.5 * (a + (c & 1)), y = 0.5 * (b + (c >> 1));
+          const double w = len * fine.weight[k][std::size_t(c)];
+          weight[0] += w * (1 - x) * (1 - y);
+          weight[1] += w * x * (1 - y);
+          weight[2] += w * (1 - x) * y;
+          weight[3] += w * x * y;
+        }
+      }
+      for (double& w : weight) w /= length;
+      if (keep_interior(weight, i, j, coarse_nx, coarse_ny) < kLeastInterior) continue;
+      for (std::size_t c = first; c < n; ++c) {
+        const std::size_t k = std::size_t(children[c][1]);
+        out.parent[k] = cuts.size();
+        out.share[k] = fine.length[k] / length;
+      }
+      cuts.column.push_back(i);
+      cuts.weight.push_back(weight);
+      cuts.length.push_back(length);
+      cuts.wanted.push_back((1.0 / length) * wanted);
+      cuts.compliance.push_back(compliance / (length * length));
+      ++cuts.row_begin[std::size_t(j) + 1];
+    }
+  }
+  for (std::size_t j = 0; j < std::size_t(coarse_ny); ++j) cuts.row_begin[j + 1] += cuts.row_begin[j];
+  std::vector<std::array<int, 2>> pairs;
+  for (std::size_t k = 0; k < std::size_t(fine.size()); ++k)
+    for (int l = fine.link_begin[k]; l < fine.link_begin[k + 1]; ++l) {
+      const int p = out.parent[k], q = out.parent[std::size_t(fine.link[std::size_t(l)])];
+      if (p >= 0 && q >= 0 && p < q) pairs.push_back({p, q});
+    }
+  set_links(cuts, pairs);
+  return out;
+}
+
+}  // namespace drumhead::grid

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A field that owns its memory: one number per node or cell in the split rows of kernels/views.h, aligned to
+// 64 bytes and zero at first. Its bytes are counted by a meter, so that a solver can say what it took.
+#include <cstddef>
+#include <utility>
+
+#include <drumhead/kernels/views.h>
+
+namespace drumhead::grid {
+
+/// Bytes in use and their peak.
+class MemoryMeter {
+ public:
+  void add(std::size_t bytes) {
+    const std::size_t now = current_ += bytes;
+    if (now > peak_) peak_ = now;
+  }
+  void remove(std::size_t bytes) { current_ -= bytes; }
+  std::size_t current() const { return current_; }
+  std::size_t peak() const { return peak_; }
+
+ private:
+  std::size_t current_ = 0, peak_ = 0;
+};
+
+template <class T>
+class Field {
+ public:
+  Field() = default;
+  /// columns × rows values, all 0. Throws std::bad_alloc. `meter` must outlive the field.
+  Field(int columns, int rows, MemoryMeter& meter);
+  Field(Field&& other) noexcept { swap(other); }
+  Field& operator=(Field&& other) noexcept {
+    Field moved(std::move(other));
+    swap(moved);
+    return *this;
+  }
+  ~Field();
+
+  /// A window; null for an empty field.
+  kernels::Plane<T> view() { return plane_; }
+  kernels::Plane<const T> view() const { return plane_; }
+  explicit operator bool() const { return bool(plane_); }
+  std::size_t bytes() const {
+    return std::size_t(plane_.stride) * std::size_t(plane_.rows) * sizeof(T);
+  }
+  void clear();
+
+ private:
+  void swap(Field& other) noexcept {
+    std::swap(plane_, other.plane_);
+    std::swap(meter_, other.meter_);
+  }
+  kernels::Plane<T> plane_;
+  MemoryMeter* meter_ = nullptr;
+};
+
+/// x, y per node and, if asked for, p per cell of an nx × ny lattice.
+template <class T>
+struct UnknownFields {
+  Field<T> x, y, p;
+  UnknownFields() = default;
+  UnknownFields(int nx, int ny, bool pressure, MemoryMeter& meter)
+      : x(nx + 1, ny + 1, meter), y(nx + 1, ny + 1, meter) {
+    if (pressure) p = Field<T>(nx, ny, meter);
+  }
+  kernels::Unknowns<T> view() { return {x.view(), y.view(), p.view()}; }
+  kernels::Unknowns<const T> view() const { return {x.view(), y.view(), p.view()}; }
+  void clear() {
+    x.clear();
+    y.clear();
+    p.clear();
+  }
+};
+
+}  // namespace drumhead::grid

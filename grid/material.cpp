@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/grid/material.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace drumhead::grid {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, double value, const char* bound) {
+  throw std::invalid_argument(what + " = " + std::to_string(value) + ": must be " + bound);
+}
+
+void check_size(const char* what, std::size_t size, const Lattice& lattice) {
+  if (size != 0 && size != lattice.cells())
+    throw std::invalid_argument(std::string(what) + " has " + std::to_string(size) +
+                                " values: must be empty or " + std::to_string(lattice.cells()) +
+                                ", one per cell");
+}
+
+std::string cell_name(const char* what, std::size_t c, const Lattice& lattice) {
+  const std::size_t nx = std::size_t(lattice.nx);
+  return std::string(what) + " of cell (" + std::to_string(c % nx) + ", " + std::to_string(c / nx) + ")";
+}
+
+}  // namespace
+
+void check(const Material& material, const Lattice& lattice) {
+  if (!(material.mu > 0.0) || !std::isfinite(material.mu)) refuse("mu", material.mu, "positive and finite");
+  if (!(material.kappa >= 0.0)) refuse("kappa", material.kappa, "at least 0 (infinity allowed)");
+  check_size("mu_cells", material.mu_cells.size(), lattice);
+  check_size("kappa_cells", material.kappa_cells.size(), lattice);
+  for (std::size_t c = 0; c < material.mu_cells.size(); ++c) {
+    const double mu = material.mu_cells[c];
+    if (!(mu > 0.0) || !std::isfinite(mu))
+      refuse(cell_name("mu factor", c, lattice), mu, "positive and finite");
+  }
+  for (std::size_t c = 0; c < material.kappa_cells.size(); ++c) {
+    const double kappa = material.kappa_cells[c];
+    if (!(kappa >= 0.0))
+      refuse(cell_name("kappa", c, lattice), kappa, "at least 0 (infinity allowed)");
+  }
+}
+
+}  // namespace drumhead::grid
