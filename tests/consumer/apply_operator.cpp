@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The kernels alone, on memory of one's own: makes the right-hand side of a known correction with the
-// operator, relaxes once from zero and sees how much of the residual is gone.
-#include <cmath>
-#include <cstdio>
+// The kernels alone, on memory of one's own: makes the right-hand side of a known correction with
+// the operator, relaxes once from zero and sees how much of the residual is gone.
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
 #include <drumhead/kernels/relax.h>
+#include <cmath>
+#include <cstdio>
 #include <vector>
 
 using namespace drumhead::kernels;
