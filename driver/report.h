@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The report of a run as JSON. Keys are fixed: some may be added, none renamed. Numbers that are not finite
+// are written as null (an exact Hessian's theta is one).
+#include <drumhead/multigrid/warp.h>
+#include <filesystem>
+#include <string>
+
+namespace drumhead::driver {
+
+struct Seconds {
+  double read = 0.0, cut = 0.0, solve = 0.0, render = 0.0, write = 0.0, total = 0.0;
+};
+
+/// `model` as the user named it.
+std::string report_json(const multigrid::Solution& solution, const std::string& model,
+                        const Seconds& seconds);
+
+/// Throws std::runtime_error naming `file`.
+void write_report(const std::string& json, const std::filesystem::path& file);
+
+}  // namespace drumhead::driver

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "warp_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <drumhead/multigrid/warp.h>
+#include <map>
+#include <stdexcept>
+
+#include "atomic_file.h"
+#include "command_line.h"
+#include "curve_settings.h"
+#include "image.h"
+#include "overlay.h"
+#include "progress.h"
+#include "render.h"
+#include "report.h"
+#include "svg_curves.h"
+#include "svg_picture.h"
+
+namespace drumhead::driver {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Wall-clock seconds since it was made or last read.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+bool is_svg(const fs::path& file) { return file.extension() == ".svg"; }
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) ||
+         fs::equivalent(a, b, error);
+}
+
+std::vector<fs::path> outputs_of(const Options& options) {
+  std::vector<fs::path> outputs;
+  for (const fs::path& file :
+       {options.output, options.overlay, options.lattice_file, options.report}) {
+    if (!file.empty()) outputs.push_back(file);
+  }
+  return outputs;
+}
+
+void check_files(Options& options) {
+  if (options.picture.empty()) throw std::invalid_argument("the scene names no picture");
+  if (options.curves.empty() && is_svg(options.picture)) options.curves = options.picture;
+  if (options.curves.empty()) {
+    throw std::invalid_argument(options.picture.string() + ": no CURVES.svg was given for it");
+  }
+  const auto outputs = outputs_of(options);
+  if (outputs.empty()) {
+    throw std::invalid_argument("no output: give -o OUT, --overlay, --lattice or --report");
+  }
+  for (auto file = outputs.begin(); file != outputs.end(); ++file) {
+    for (const fs::path& input : {options.picture, options.curves}) {
+      if (same_file(*file, input)) {
+        throw std::invalid_argument(file->string() + ": an output must not replace an input");
+      }
+    }
+    if (std::any_of(outputs.begin(), file, [&](const fs::path& f) { return same_file(f, *file); })) {
+      throw std::invalid_argument(file->string() + ": two outputs must not be the same file");
+    }
+  }
+  if (!options.output.empty()) check_writable_format(options.output);
+}
+
+multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
+                                  const std::vector<SvgCurve>& curves) {
+  multigrid::WarpProblem problem;
+  problem.lattice = grid::make_lattice(picture.width(), picture.height(), options.lattice);
+  problem.material.mu = options.mu;
+  problem.material.kappa = options.model == "harmonic" ? 0.0 : options.kappa;
+  check_inside(problem.lattice, curves);
+  problem.curves = apply_settings(options, curves);
+  return problem;
+}
+
+/// The outputs that were asked for, as empty temporary files until `commit`.
+class Outputs {
+ public:
+  explicit Outputs(const Options& options) {
+    for (const fs::path& file : outputs_of(options)) files_.emplace(file, file);
+  }
+  /// Where to write what shall become `file`.
+  const fs::path& operator[](const fs::path& file) const { return files_.at(file).temporary(); }
+  void commit() {
+    for (auto& [path, file] : files_) file.commit();
+  }
+
+ private:
+  std::map<fs::path, AtomicFile> files_;
+};
+
+}  // namespace
+
+int run_warp(Options options) {
+  Stopwatch watch, whole;
+  Seconds seconds;
+  Progress progress(options.quiet);
+  remove_temporaries_on_signals();
+  check_files(options);
+  Outputs outputs(options);
+
+  progress.show("reading " + options.picture.string());
+  const Image picture =
+      is_svg(options.picture) ? rasterise(options.picture) : read_image(options.picture);
+  const SvgCurves drawing =
+      read_curves(SvgDocument(options.curves), picture.width(), picture.height());
+  for (const std::string& warning : drawing.warnings) progress.warn(warning);
+  const multigrid::WarpProblem problem = problem_of(options, picture, drawing.curves);
+  seconds.read = watch.lap();
+
+  multigrid::SolverOptions solver{.exact = options.exact,
+                                  .tolerance_px = options.tolerance_px,
+                                  .threads = options.threads,
+                                  .progress = {}};
+  solver.progress = [&](const multigrid::Progress& at) { progress.show(at); };
+  progress.show("cutting " + std::to_string(problem.curves.size()) + " curves");
+  const multigrid::Solution solution = multigrid::solve(problem, solver);
+  seconds.cut = solution.report.cut_seconds;
+  seconds.solve = solution.report.solve_seconds;
+  watch.lap();
+
+  progress.show("rendering");
+  Image warped;
+  if (!options.output.empty() || !options.overlay.empty()) {
+    warped = render(picture, solution, options.threads);
+  }
+  seconds.render = watch.lap();
+
+  progress.show("writing");
+  if (!options.output.empty()) write_image(warped, outputs[options.output]);
+  if (!options.overlay.empty()) {
+    write_overlay(warped, solution, drawing.curves, outputs[options.overlay]);
+  }
+  if (!options.lattice_file.empty()) write_lattice(solution, outputs[options.lattice_file]);
+  seconds.write = watch.lap();
+  seconds.total = whole.lap();
+  if (!options.report.empty()) {
+    write_report(report_json(solution, options.model, seconds), outputs[options.report]);
+  }
+  outputs.commit();
+
+  progress.summarise(solution, seconds);
+  if (solution.report.status == multigrid::Status::converged) return kConverged;
+  progress.warn(std::string(in_words(solution.report.status)) + "; the best result is written");
+  return kNotConverged;
+}
+
+}  // namespace drumhead::driver
