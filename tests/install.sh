@@ -39,5 +39,9 @@ install() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
 }
 echo "Installing$missing"
-# A fresh system has no package lists, or ones so old that their versions are gone from the mirrors.
-install || { $as_root apt-get update -q && install; }
+# A fresh system has no package lists, an old one such that the mirrors no longer follow.
+update() {
+  $as_root apt-get update -q
+}
+apt-cache show $missing >/dev/null 2>&1 || update
+install || { update && install; }
