@@ -1,0 +1,36 @@
+#!/bin/sh
+# From a fresh Debian 12 to warped pictures, as root or with sudo: installs the packages that are missing,
+# builds the drumhead command, warps the scenes of driver/examples and prints where the results are.
+#     sh driver/demo.sh                 all scenes
+#     sh driver/demo.sh face sponge     only these
+# Run again, it does only what is missing or out of date.
+set -eu
+cd "$(dirname "$0")/.."
+
+sh tests/install.sh
+cmake --preset release
+cmake --build --preset release --target drumhead
+
+drumhead=build/release/driver/drumhead
+examples=driver/examples
+results=build/demo
+mkdir -p "$results"
+[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
+
+for scene in "$@"; do
+  for needed in "$drumhead" "$examples/$scene.toml" "$examples/$scene.svg"; do
+    if [ ! -e "$results/$scene.png" ] || [ "$needed" -nt "$results/$scene.png" ]; then
+      rsvg-convert --output "$results/$scene-before.png" "$examples/$scene.svg"
+      # Exit code 1: not converged, and said so; its picture is there to be looked at all the same.
+      "$drumhead" warp "$examples/$scene.toml" || [ $? = 1 ]
+      break
+    fi
+  done
+done
+
+echo
+for scene in "$@"; do
+  for result in -before.png .png -overlay.png .json; do
+    [ ! -e "$results/$scene$result" ] || echo "$PWD/$results/$scene$result"
+  done
+done

@@ -1,0 +1,27 @@
+#!/bin/sh
+# Draws driver/examples/pictures again, which the README shows: 640 pixels wide, 256 colours.
+#     sh driver/examples/pictures.sh                 all scenes
+#     sh driver/examples/pictures.sh face sponge     only these
+# Wants the Debian package pngquant beside those of driver/demo.sh, which it runs first.
+set -eu
+cd "$(dirname "$0")/../.."
+command -v pngquant >/dev/null || {
+  echo "driver/examples/pictures.sh: needs pngquant (apt-get install pngquant)" >&2
+  exit 1
+}
+sh driver/demo.sh "$@"
+
+examples=driver/examples
+mkdir -p "$examples/pictures"
+[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
+# small FROM TO
+small() {
+  oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 640x0 -d uint8 -o "build/demo/small.png"
+  pngquant --force --strip --speed 1 --output "$2" 256 build/demo/small.png
+  rm build/demo/small.png
+}
+for scene in "$@"; do
+  small "build/demo/$scene-before.png" "$examples/pictures/$scene-before.png"
+  small "build/demo/$scene.png" "$examples/pictures/$scene-after.png"
+done
+ls -l "$examples/pictures"
