@@ -5,10 +5,9 @@ add_library(drumhead_oracle STATIC
   support/scenes.cpp support/oracle_cut.cpp support/oracle_system.cpp support/oracle_newton.cpp
   support/oracle_relax.cpp)
 target_include_directories(drumhead_oracle PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
-target_compile_features(drumhead_oracle PUBLIC cxx_std_20)
-# Eigen's sparse factorisation is some fifty times slower without the optimiser; assertions stay on in debug.
-target_compile_options(drumhead_oracle PRIVATE -Wall -Wextra -O2)
-set_target_properties(drumhead_oracle PROPERTIES CXX_EXTENSIONS OFF)
+drumhead_compile_settings(drumhead_oracle)
+# Eigen's sparse factorisation is many times slower without the optimiser; assertions stay on in debug.
+target_compile_options(drumhead_oracle PRIVATE -O2)
 target_link_libraries(drumhead_oracle PUBLIC Eigen3::Eigen)
 
 foreach(name system cut)
