@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "cycle.h"
+
+#include <algorithm>
+
+#include <drumhead/kernels/cuts.h>
+
+namespace drumhead::multigrid {
+
+template <class T>
+Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure)
+    : hierarchy_(hierarchy), top_(top), pressure_(pressure) {
+  hierarchy.restrict_state(top);
+  bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
+  residual_.resize(hierarchy[top].dq.size());
+}
+
+template <class T>
+kernels::LevelSystem<T> Cycle<T>::system(int l) {
+  Level<T>& level = hierarchy_[l];
+  kernels::LevelSystem<T> s{.membrane = pressure_ ? level.membrane() : level.harmonic(),
+                            .cuts = level.cuts.view(T(hierarchy_.traits().jump_inside)),
+                            .d = level.d.view(),
+                            .f = level.f.view(),
+                            .dq = level.dq.data(),
+                            .fq = level.fq.data()};
+  if (!pressure_) s.d.p = s.f.p = {};
+  return s;
+}
+
+template <class T>
+void Cycle<T>::run(CycleKind kind) {
+  descend(top_, kind, true);
+}
+
+template <class T>
+void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
+  Level<T>& level = hierarchy_[l];
+  if (from_zero) std::ranges::fill(level.dq, T(0));
+  if (l + 1 == hierarchy_.size()) {
+    bottom_.solve(level);
+    if (l == top_) kernels::add_curve_force(level.cuts.view(T(0)), level.dq.data(), T(1), level.f.view());
+    return;
+  }
+  const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);
+  kernels::relax<T>(fine, {.from_zero = from_zero}, nullptr, &coarse.f, hierarchy_.scratch());
+  restrict_cuts(l);
+  descend(l + 1, kind, true);
+  if (kind == CycleKind::f && l + 2 < hierarchy_.size()) descend(l + 1, CycleKind::v, false);
+  prolong_cuts(l);
+  const kernels::Unknowns<const T> correction = coarse.d;
+  kernels::relax<T>(fine, {}, &correction, nullptr, hierarchy_.scratch());
+}
+
+template <class T>
+void Cycle<T>::restrict_cuts(int l) {
+  const kernels::LevelSystem<T> fine = system(l);
+  Level<T>& coarse = hierarchy_[l + 1];
+  std::ranges::fill(coarse.fq, T(0));
+  kernels::cuts_residual<T>(fine.cuts, fine.fq, fine.d, fine.dq, residual_.data());
+  const CutTransfer<T>& transfer = hierarchy_[l].to_coarse;
+  for (std::size_t k = 0; k < transfer.parent.size(); ++k) {
+    if (transfer.parent[k] < 0) continue;
+    const std::size_t p = 2 * std::size_t(transfer.parent[k]);
+    coarse.fq[p] += transfer.share[k] * residual_[2 * k];
+    coarse.fq[p + 1] += transfer.share[k] * residual_[2 * k + 1];
+  }
+}
+
+template <class T>
+void Cycle<T>::prolong_cuts(int l) {
+  Level<T>& fine = hierarchy_[l];
+  const Level<T>& coarse = hierarchy_[l + 1];
+  const CutTransfer<T>& transfer = fine.to_coarse;
+  for (std::size_t k = 0; k < transfer.parent.size(); ++k) {
+    const int parent = transfer.parent[k];
+    for (std::size_t c = 0; c < 2; ++c) {
+      residual_[2 * k + c] =
+          parent < 0 ? T(0) : transfer.share[k] * coarse.dq[2 * std::size_t(parent) + c];
+      fine.dq[2 * k + c] += residual_[2 * k + c];
+    }
+  }
+  kernels::add_curve_force<T>(fine.cuts.view(T(0)), residual_.data(), T(1), fine.f.view());
+}
+
+template class Cycle<float>;
+template class Cycle<double>;
+
+}  // namespace drumhead::multigrid

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "hierarchy.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <drumhead/kernels/transfer.h>
+
+namespace drumhead::multigrid {
+namespace {
+
+// The dense solver of the bottom level costs n³; at 8² (about 220 unknowns) it is negligible.
+constexpr int kBottomCells = 8;
+// kappa = 0 in some cells of a scene with pressures: compliance that makes P negligible.
+constexpr double kMostCompliance = 1e6;
+
+bool coarsest(int nx, int ny) { return std::max(nx, ny) <= kBottomCells || std::min(nx, ny) <= 3; }
+
+}  // namespace
+
+template <class T>
+Hierarchy<T>::Hierarchy(const grid::Lattice& lattice, const grid::Material& material,
+                        const grid::CutCells& cuts, const SceneTraits& traits,
+                        grid::MemoryMeter& meter)
+    : traits_(traits), scratch_(lattice.nx + 1, omp_get_max_threads()) {
+  int nx = lattice.nx, ny = lattice.ny;
+  grid::CutCells rows = cuts;
+  for (T spacing = T(1);; spacing *= T(2)) {
+    Level<T>& level = levels_.emplace_back(nx, ny, spacing, traits, meter);
+    level.cuts = CutRows<T>(rows);
+    level.wanted = rows.wanted;
+    level.q.assign(2 * rows.column.size(), T(0));
+    level.dq = level.fq = level.q;
+    meter.add(level.cuts.bytes() + 3 * level.q.size() * sizeof(T) +
+              level.wanted.size() * sizeof(grid::Point));
+    if (coarsest(nx, ny)) break;
+    grid::CoarseCuts coarse = grid::coarsen(rows, nx, ny);
+    level.to_coarse = {std::move(coarse.parent), {coarse.share.begin(), coarse.share.end()}};
+    rows = std::move(coarse.cuts);
+    nx = grid::coarse_cells(nx);
+    ny = grid::coarse_cells(ny);
+  }
+  set_material(material, meter);
+}
+
+template <class T>
+void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMeter& meter) {
+  Level<T>& finest = levels_.front();
+  auto fill = [&](grid::Field<T>& field, const std::vector<float>& cells, auto&& value) {
+    if (cells.empty()) return;
+    field = grid::Field<T>(finest.nx, finest.ny, meter);
+    std::size_t c = 0;
+    for (int j = 0; j < finest.ny; ++j)
+      for (int i = 0; i < finest.nx; ++i) field.view().at(i, j) = T(value(double(cells[c++])));
+  };
+  auto compliance = [](double kappa) { return std::min(kMostCompliance, 1.0 / kappa); };
+  fill(finest.mu, material.mu_cells, [](double mu) { return mu; });
+  if (traits_.pressure) fill(finest.compliance, material.kappa_cells, compliance);
+  for (Level<T>& level : levels_) level.compliance_value = T(compliance(material.kappa));
+  for (int l = 0; l + 1 < size(); ++l) {
+    Level<T>&fine = levels_[std::size_t(l)], &coarse = levels_[std::size_t(l) + 1];
+    auto average = [&](const grid::Field<T>& from, grid::Field<T>& to) {
+      if (!from) return;
+      to = grid::Field<T>(coarse.nx, coarse.ny, meter);
+      kernels::mean_cells<T>(from.view(), to.view());
+    };
+    average(fine.mu, coarse.mu);
+    average(fine.compliance, coarse.compliance);
+  }
+  for (Level<T>& level : levels_)
+    if (level.mu) set_diagonal(level, meter);
+}
+
+template <class T>
+void Hierarchy<T>::set_diagonal(Level<T>& level, grid::MemoryMeter& meter) {
+  level.inverse_diagonal = grid::Field<T>(level.nx + 1, level.ny + 1, meter);
+  const kernels::Plane<T> out = level.inverse_diagonal.view(), mu = level.mu.view();
+  for (int j = 1; j < level.ny; ++j)
+    for (int i = 1; i < level.nx; ++i)
+      out.at(i, j) = T(1) / ((mu.at(i - 1, j - 1) + mu.at(i, j - 1)) + (mu.at(i - 1, j) + mu.at(i, j)));
+}
+
+template <class T>
+void Hierarchy<T>::restrict_state(int top) {
+  for (int l = top; l + 1 < size(); ++l) {
+    const Level<T>& fine = (*this)[l];
+    Level<T>& coarse = (*this)[l + 1];
+    kernels::inject_nodes<T>(fine.ux.view(), coarse.ux.view());
+    kernels::inject_nodes<T>(fine.uy.view(), coarse.uy.view());
+    if (fine.pressure) kernels::mean_cells<T>(fine.pressure.view(), coarse.pressure.view());
+    coarse.clamp_centre = fine.clamp_centre;
+    coarse.clamp_width = fine.clamp_width;
+  }
+}
+
+template <class T>
+void Hierarchy<T>::prolong_state(int l) {
+  Level<T>& fine = (*this)[l];
+  const Level<T>& coarse = (*this)[l + 1];
+  kernels::prolong_nodes<T>(coarse.ux.view(), fine.ux.view());
+  kernels::prolong_nodes<T>(coarse.uy.view(), fine.uy.view());
+  if (fine.pressure) kernels::interpolate_cells<T>(coarse.pressure.view(), fine.pressure.view());
+  for (std::size_t k = 0; k < fine.to_coarse.parent.size(); ++k) {
+    const int parent = fine.to_coarse.parent[k];
+    for (std::size_t c = 0; c < 2; ++c)
+      fine.q[2 * k + c] =
+          parent < 0 ? T(0) : fine.to_coarse.share[k] * coarse.q[2 * std::size_t(parent) + c];
+  }
+}
+
+template class Hierarchy<float>;
+template class Hierarchy<double>;
+
+}  // namespace drumhead::multigrid

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The levels of a scene, finest first, and everything that is handed down them: material (averaged), curve
+// rows (aggregated exactly), state (x̂ injected, P averaged). Operators are rediscretised from these.
+#include <deque>
+
+#include <drumhead/grid/curve.h>
+
+#include "level.h"
+
+namespace drumhead::multigrid {
+
+template <class T>
+class Hierarchy {
+ public:
+  /// Builds all levels down to one with at most kBottomCells cells across its longer side.
+  Hierarchy(const grid::Lattice& lattice, const grid::Material& material, const grid::CutCells& cuts,
+            const SceneTraits& traits, grid::MemoryMeter& meter);
+
+  int size() const { return int(levels_.size()); }
+  Level<T>& operator[](int l) { return levels_[std::size_t(l)]; }
+  const Level<T>& operator[](int l) const { return levels_[std::size_t(l)]; }
+  int index_of(const Level<T>& level) const {
+    int l = 0;
+    while (&levels_[std::size_t(l)] != &level) ++l;
+    return l;
+  }
+  const SceneTraits& traits() const { return traits_; }
+  kernels::RowScratch<T>& scratch() { return scratch_; }
+
+  /// Hands the state of level `top` and its clamp down to all coarser levels.
+  void restrict_state(int top);
+  /// State of level l := interpolation of that of level l + 1: x̂ bilinear, P between cell centres, q by
+  /// arc length.
+  void prolong_state(int l);
+
+ private:
+  void set_material(const grid::Material& material, grid::MemoryMeter& meter);
+  void set_diagonal(Level<T>& level, grid::MemoryMeter& meter);
+
+  SceneTraits traits_;
+  std::deque<Level<T>> levels_;
+  kernels::RowScratch<T> scratch_;
+};
+
+}  // namespace drumhead::multigrid

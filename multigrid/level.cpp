@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "level.h"
+
+#include <algorithm>
+
+namespace drumhead::multigrid {
+
+template <class T>
+CutRows<T>::CutRows(const grid::CutCells& cuts)
+    : row_begin_(cuts.row_begin),
+      column_(cuts.column),
+      link_begin_(cuts.link_begin),
+      link_(cuts.link),
+      compliance_(cuts.compliance.begin(), cuts.compliance.end()),
+      length_(cuts.length.begin(), cuts.length.end()) {
+  for (const auto& weight : cuts.weight)
+    for (const double w : weight) weight_.push_back(T(w));
+  for (std::size_t k = 0; k < length_.size(); ++k)
+    for (int l = link_begin_[k]; l < link_begin_[k + 1]; ++l) {
+      const T shorter = std::min(length_[k], length_[std::size_t(link_[std::size_t(l)])]);
+      strength_.push_back(shorter * shorter);
+    }
+}
+
+template <class T>
+kernels::Cuts<T> CutRows<T>::view(T jump) const {
+  return {.count = size(),
+          .row_begin = row_begin_.data(),
+          .column = column_.data(),
+          .weight = weight_.data(),
+          .compliance = compliance_.data(),
+          .length = length_.data(),
+          .link_begin = link_begin_.data(),
+          .link = link_.data(),
+          .link_strength = strength_.data(),
+          .jump = jump};
+}
+
+template <class T>
+std::size_t CutRows<T>::bytes() const {
+  return (row_begin_.size() + column_.size() + link_begin_.size() + link_.size()) * sizeof(int) +
+         (weight_.size() + compliance_.size() + length_.size() + strength_.size()) * sizeof(T);
+}
+
+template <class T>
+Level<T>::Level(int nx_, int ny_, T spacing_, const SceneTraits& traits, grid::MemoryMeter& meter)
+    : nx(nx_),
+      ny(ny_),
+      spacing(spacing_),
+      ux(nx + 1, ny + 1, meter),
+      uy(nx + 1, ny + 1, meter),
+      d(nx, ny, traits.pressure, meter),
+      f(nx, ny, traits.pressure, meter) {
+  if (traits.pressure) pressure = grid::Field<T>(nx, ny, meter);
+}
+
+template <class T>
+kernels::Membrane<T> Level<T>::membrane() const {
+  kernels::Membrane<T> m = harmonic();
+  m.pressure = pressure.view();
+  m.compliance = {compliance_value, compliance.view()};
+  m.clamp_centre = clamp_centre;
+  m.clamp_width = clamp_width;
+  return m;
+}
+
+template <class T>
+kernels::Membrane<T> Level<T>::harmonic() const {
+  kernels::Membrane<T> m;
+  m.ux = ux.view();
+  m.uy = uy.view();
+  m.spacing = spacing;
+  m.mu = {T(1), mu.view()};
+  m.inverse_diagonal = inverse_diagonal.view();
+  return m;
+}
+
+template class CutRows<float>;
+template class CutRows<double>;
+template struct Level<float>;
+template struct Level<double>;
+
+}  // namespace drumhead::multigrid

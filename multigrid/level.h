@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// One level of the hierarchy: its lattice, material, curve rows, state and the linear system of the current
+// Newton step. mu is 1 throughout: pressures, weights and energies are in units of the scene's mu.
+#include <vector>
+
+#include <drumhead/grid/cut_cells.h>
+#include <drumhead/grid/field.h>
+#include <drumhead/grid/material.h>
+#include <drumhead/kernels/relax.h>
+
+namespace drumhead::multigrid {
+
+/// What of a scene decides which fields exist and how the rows are softened.
+struct SceneTraits {
+  bool pressure = true;   ///< kappa > 0 somewhere
+  double jump = 0.0;      ///< qs of the equations: 0 for exact rows
+  double jump_inside = 0.005;  ///< qs of the preconditioner
+};
+
+/// The curve rows of a level in the solver's number type.
+template <class T>
+class CutRows {
+ public:
+  CutRows() = default;
+  explicit CutRows(const grid::CutCells& cuts);
+  kernels::Cuts<T> view(T jump) const;
+  int size() const { return int(length_.size()); }
+  std::size_t bytes() const;
+
+ private:
+  std::vector<int> row_begin_, column_, link_begin_, link_;
+  std::vector<T> weight_, compliance_, length_, strength_;
+};
+
+/// Transfer of q to the next coarser level: q_c = share·q_parent.
+template <class T>
+struct CutTransfer {
+  std::vector<int> parent;
+  std::vector<T> share;
+};
+
+template <class T>
+struct Level {
+  int nx = 0, ny = 0;
+  T spacing = T(1);
+
+  // Material: fields only where the scene has them.
+  T compliance_value = T(1);
+  grid::Field<T> mu, compliance, inverse_diagonal;
+
+  // Curve rows.
+  CutRows<T> cuts;
+  CutTransfer<T> to_coarse;
+  std::vector<grid::Point> wanted;  ///< b, in finest cells
+
+  // State: of the solution where Newton runs, restricted from it on coarser levels.
+  grid::Field<T> ux, uy, pressure;
+  std::vector<T> q;
+
+  // Linear system of the cycle.
+  grid::UnknownFields<T> d, f;
+  std::vector<T> dq, fq;
+
+  T clamp_centre = T(0), clamp_width = T(1);
+
+  Level(int nx, int ny, T spacing, const SceneTraits& traits, grid::MemoryMeter& meter);
+
+  kernels::Membrane<T> membrane() const;
+  /// The membrane without pressures, for the harmonic start.
+  kernels::Membrane<T> harmonic() const;
+  std::size_t nodes() const { return std::size_t(nx + 1) * std::size_t(ny + 1); }
+};
+
+}  // namespace drumhead::multigrid

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "nested.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace drumhead::multigrid {
+namespace {
+
+// From 16² a wrong minimum was found; a feature of fewer than four cells is not seen as one.
+constexpr int kStartCells = 32;
+constexpr double kCellsPerFeature = 4.0;
+// A start finer than this would cost more than it is worth.
+constexpr int kMostStartCells = 128;
+constexpr int kStartSteps = 60;
+constexpr int kLevelSteps = 8;
+// Error left on levels that only start the next one, and on the finest: share of the estimated
+// discretisation error.
+constexpr double kShare = 0.1;
+// Exact constraints: no node moves further than this in the last step, in finest cells.
+constexpr double kExactMove = 1e-9;
+
+template <class T>
+int start_level(const Hierarchy<T>& hierarchy, double smallest_feature) {
+  auto cells = [&](int l) { return std::max(hierarchy[l].nx, hierarchy[l].ny); };
+  int start = 0;
+  while (start + 1 < hierarchy.size() && cells(start + 1) >= kStartCells) {
+    const double feature = smallest_feature / double(hierarchy[start + 1].spacing);
+    if (feature < kCellsPerFeature && cells(start) <= kMostStartCells) break;
+    ++start;
+  }
+  return start;
+}
+
+KrylovOptions krylov_options(const NestedOptions& options) {
+  KrylovOptions krylov;
+  if (options.exact) {
+    krylov.directions = 40;
+    krylov.most_cycles = 120;
+    krylov.reduction = 1e-3;
+  }
+  return krylov;
+}
+
+LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell_px) {
+  for (NewtonStep& step : steps) {
+    step.dx_rms_px *= cell_px;
+    step.dx_max_px *= cell_px;
+  }
+  return {nx, ny, std::move(steps)};
+}
+
+}  // namespace
+
+template <class T>
+void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
+                      grid::MemoryMeter& meter, SolveReport& report) {
+  const int start = start_level(hierarchy, options.smallest_feature);
+  ClampSchedule clamp;
+  NewtonOptions newton_options;
+  newton_options.krylov = krylov_options(options);
+  for (int l = start; l >= 0; --l) {
+    Level<T>& level = hierarchy[l];
+    auto progress = [&](int step) {
+      // Work falls by four per level; the finest level is about three quarters of the whole.
+      if (options.progress)
+        options.progress({level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
+    };
+    Newton<T> newton(hierarchy, l, meter);
+    newton_options.most_steps = kLevelSteps;
+    newton_options.share_of_discretisation = kShare;
+    newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
+    if (l == start) {
+      KrylovOptions harmonic = newton_options.krylov;
+      harmonic.reduction = 1e-3;
+      newton.harmonic(harmonic);
+      newton_options.most_steps = kStartSteps;
+      newton_options.share_of_discretisation = 0.0;
+      newton_options.tolerance_rms = 0.01 * double(level.spacing);
+    } else {
+      hierarchy.prolong_state(l);
+    }
+    if (l == 0 && options.exact) {
+      newton_options.most_steps = kStartSteps;
+      newton_options.share_of_discretisation = 0.0;
+      newton_options.tolerance_rms = newton_options.tolerance_max = kExactMove;
+    }
+    if (l == 0 && options.tolerance_cells > 0.0) {
+      newton_options.most_steps = kStartSteps;
+      newton_options.share_of_discretisation = 0.0;
+      newton_options.tolerance_rms = options.tolerance_cells;
+    }
+    NewtonReport done = newton.run(newton_options, clamp, progress);
+    newton_options.expected_rate = done.rate;
+    report.status = done.status;
+    report.algebraic_rms_px = done.error_rms * cell_px;
+    report.algebraic_max_px = done.error_max * cell_px;
+    const bool estimated = l != start;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    report.discretisation_rms_px = estimated ? 0.5 * done.change_rms * cell_px : unknown;
+    report.discretisation_max_px = estimated ? 0.5 * done.change_max * cell_px : unknown;
+    report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
+    if (report.status == Status::not_finite) return;
+  }
+}
+
+template void nested_iteration(Hierarchy<float>&, const NestedOptions&, double, grid::MemoryMeter&,
+                               SolveReport&);
+template void nested_iteration(Hierarchy<double>&, const NestedOptions&, double, grid::MemoryMeter&,
+                               SolveReport&);
+
+}  // namespace drumhead::multigrid

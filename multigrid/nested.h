@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Nested iteration: the harmonic state and Newton to the end on a small lattice, then a few Newton steps on
+// each finer one, from the interpolated solution of the coarser. What a level changes in that start estimates
+// its discretisation error for free: ½ RMS(u_h − P u_2h) for a first-order method.
+#include <drumhead/multigrid/warp.h>
+
+#include "newton.h"
+
+namespace drumhead::multigrid {
+
+struct NestedOptions {
+  bool exact = false;
+  double tolerance_cells = 0.0;   ///< 0: a tenth of the estimated discretisation error
+  double smallest_feature = 0.0;  ///< extent of the smallest curve in finest cells
+  double kappa = 1.0;             ///< of the scene, chooses the cycle
+  std::function<void(const Progress&)> progress;
+};
+
+/// Solves on all levels of the hierarchy from zero; fills status, levels and errors of the report (converted to
+/// pixels by cell_px). The state is left in hierarchy[0].
+template <class T>
+void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
+                      grid::MemoryMeter& meter, SolveReport& report);
+
+}  // namespace drumhead::multigrid

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <drumhead/kernels/cuts.h>
+#include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/reduce.h>
+
+namespace drumhead::multigrid {
+namespace {
+
+constexpr double kGrow = 8.0;
+constexpr double kShortestStep = 1e-4;
+constexpr double kExactTheta = 1e6;
+// Pressures looked at for the median; the clamp does not need it exactly.
+constexpr int kMedianSamples = 1 << 16;
+// A linear solution this bad is not worth a step with an unclamped Hessian.
+constexpr double kStagnated = 0.5;
+
+}  // namespace
+
+template <class T>
+Newton<T>::Newton(Hierarchy<T>& hierarchy, int top, grid::MemoryMeter& meter)
+    : hierarchy_(hierarchy), level_(hierarchy[top]), meter_(meter) {}
+
+template <class T>
+void Newton<T>::set_force(bool pressure) {
+  const kernels::Cuts<T> cuts = level_.cuts.view(T(hierarchy_.traits().jump));
+  kernels::Unknowns<T> f = force_.fields.view();
+  kernels::force<T>(pressure ? level_.membrane() : level_.harmonic(), f);
+  kernels::add_curve_force<T>(cuts, level_.q.data(), T(1), f);
+  const kernels::Unknowns<const T> u{level_.ux.view(), level_.uy.view(), {}};
+  kernels::apply_cuts<T>(cuts, u, level_.q.data(), force_.q.data());
+  for (std::size_t k = 0; k < level_.wanted.size(); ++k) {
+    force_.q[2 * k] = T(-(level_.wanted[k].x + double(force_.q[2 * k])));
+    force_.q[2 * k + 1] = T(-(level_.wanted[k].y + double(force_.q[2 * k + 1])));
+  }
+}
+
+template <class T>
+double Newton<T>::median_pressure() const {
+  const kernels::Plane<const T> p = level_.pressure.view();
+  const std::size_t cells = std::size_t(p.columns) * std::size_t(p.rows);
+  const std::size_t stride = cells / kMedianSamples + 1;
+  std::vector<T> sample;
+  for (std::size_t c = stride / 2; c < cells; c += stride)
+    sample.push_back(p.at(int(c % std::size_t(p.columns)), int(c / std::size_t(p.columns))));
+  const auto middle = sample.begin() + std::ptrdiff_t(sample.size() / 2);
+  std::ranges::nth_element(sample, middle);
+  return double(*middle);
+}
+
+template <class T>
+void Newton<T>::set_clamp(double theta) {
+  if (!level_.pressure) return;
+  const bool exact = theta >= kExactTheta;
+  level_.clamp_centre = exact ? T(0) : T(median_pressure());
+  level_.clamp_width = exact ? T(1e30) : T(theta);
+}
+
+template <class T>
+void Newton<T>::prepare_curve_merit() {
+  const kernels::Cuts<T> cuts = level_.cuts.view(T(hierarchy_.traits().jump));
+  const std::size_t values = level_.q.size();
+  gap_.assign(values, 0.0);
+  slope_.assign(values, 0.0);
+  std::vector<T> q(values), image(values), zero(values, T(0));
+  for (std::size_t k = 0; k < values; ++k) q[k] = level_.q[k] + dx_.q[k];
+  const kernels::Unknowns<const T> u{level_.ux.view(), level_.uy.view(), {}};
+  kernels::apply_cuts<T>(cuts, u, q.data(), image.data());
+  penalty_ = 0.0;
+  for (std::size_t k = 0; k < values; ++k) {
+    const grid::Point b = level_.wanted[k / 2];
+    gap_[k] = (k % 2 ? b.y : b.x) + double(image[k]);
+    penalty_ = std::max(penalty_, 1.5 * std::abs(double(q[k])) / double(cuts.length[k / 2]));
+  }
+  kernels::apply_cuts<T>(cuts, dx_.fields.view(), zero.data(), image.data());
+  for (std::size_t k = 0; k < values; ++k) slope_[k] = double(image[k]);
+}
+
+template <class T>
+double Newton<T>::curve_merit(double step) const {
+  const kernels::Cuts<T> cuts = level_.cuts.view(T(0));
+  double sum = 0.0;
+  for (std::size_t k = 0; k < gap_.size(); ++k)
+    sum += double(cuts.length[k / 2]) * std::abs(gap_[k] + step * slope_[k]);
+  return penalty_ * sum;
+}
+
+template <class T>
+NewtonStep Newton<T>::line_search() {
+  prepare_curve_merit();
+  const kernels::Membrane<T> membrane = level_.membrane();
+  NewtonStep result;
+  auto merit = [&](double step) {
+    const kernels::EnergySums sums = kernels::energy<T>(membrane, dx_.fields.view(), T(step));
+    result.inverted_cells = int(sums.inverted_cells);
+    return sums.elastic + sums.volume_merit + curve_merit(step);
+  };
+  const double before = merit(0.0);
+  // Sums of rounded cell energies are good to a few units of T's precision.
+  const double slack = 4.0 * double(std::numeric_limits<T>::epsilon()) * std::abs(before);
+  for (double step = 1.0; step >= kShortestStep; step *= 0.5)
+    if (merit(step) <= before + slack) {
+      result.step = step;
+      return result;
+    }
+  merit(0.0);
+  result.step = 0.0;
+  return result;
+}
+
+template <class T>
+void Newton<T>::update(double step, bool pressure) {
+  const auto d = dx_.fields.view();
+  kernels::combine<T>(T(step), kernels::Plane<const T>(d.x), T(1), level_.ux.view());
+  kernels::combine<T>(T(step), kernels::Plane<const T>(d.y), T(1), level_.uy.view());
+  if (pressure) kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
+  for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * dx_.q[k];
+}
+
+template <class T>
+KrylovReport Newton<T>::harmonic(const KrylovOptions& options) {
+  Krylov<T> krylov(hierarchy_, hierarchy_.index_of(level_), false, meter_);
+  force_ = krylov.make_vector();
+  dx_ = krylov.make_vector();
+  set_force(false);
+  const KrylovReport report = krylov.solve(force_, dx_, options);
+  update(1.0, false);
+  return report;
+}
+
+template <class T>
+bool Newton<T>::finite(const NewtonStep& step) const {
+  return std::isfinite(step.dx_rms_px) && std::isfinite(step.dx_max_px) && std::isfinite(step.residual);
+}
+
+template <class T>
+NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
+                            const std::function<void(int)>& progress) {
+  NewtonReport report;
+  report.rate = options.expected_rate;
+  const bool pressure = bool(level_.pressure);
+  Krylov<T> krylov(hierarchy_, hierarchy_.index_of(level_), pressure, meter_);
+  force_ = krylov.make_vector();
+  dx_ = krylov.make_vector();
+  report.status = Status::limit;
+  for (int n = 0; n < options.most_steps; ++n) {
+    if (progress) progress(n + 1);
+    clamp.theta = std::min(clamp.theta, clamp.most);
+    set_clamp(clamp.theta);
+    set_force(pressure);
+    KrylovReport linear = krylov.solve(force_, dx_, options.krylov);
+    if (linear.residual > kStagnated && clamp.theta > 1.0) {
+      // Indefinite far from a solution: the positive definite Hessian always makes progress.
+      clamp.most = std::max(1.0, clamp.theta / kGrow);
+      clamp.theta = 1.0;
+      set_clamp(1.0);
+      set_force(pressure);
+      const int wasted = linear.cycles;
+      linear = krylov.solve(force_, dx_, options.krylov);
+      linear.cycles += wasted;
+    }
+    const auto d = dx_.fields.view();
+    const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
+    const double rms = std::sqrt(squares / double(level_.nodes()));
+    NewtonStep step = std::isfinite(rms) ? line_search() : NewtonStep{.step = 0.0};
+    step.theta = clamp.theta;
+    step.krylov = linear.cycles;
+    step.residual = linear.residual;
+    step.dx_rms_px = step.step * rms;
+    step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
+    if (!std::isfinite(rms) || !finite(step)) {
+      report.status = Status::not_finite;
+      return report;
+    }
+    if (step.step > 0.0) update(step.step, pressure);
+    report.steps.push_back(step);
+    report.change_rms += step.dx_rms_px;
+    report.change_max += step.dx_max_px;
+
+    const bool full = step.step == 1.0;
+    if (step.step == 0.0 && clamp.theta <= 1.0) {
+      report.status = Status::stalled;
+      return report;
+    }
+    if (n > 0 && full && report.steps[std::size_t(n) - 1].step == 1.0)
+      report.rate = std::min(0.9, step.dx_rms_px / report.steps[std::size_t(n) - 1].dx_rms_px);
+    const double left = std::max(report.rate, linear.residual) / (1.0 - std::min(0.9, report.rate));
+    report.error_rms = left * step.dx_rms_px;
+    report.error_max = left * step.dx_max_px;
+    const double wanted =
+        std::max(options.tolerance_rms, options.share_of_discretisation * 0.5 * report.change_rms);
+    if (full && report.error_rms <= wanted &&
+        (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max)) {
+      report.status = Status::converged;
+      return report;
+    }
+    clamp.theta = full ? std::min(clamp.theta * kGrow, kExactTheta) : std::max(1.0, clamp.theta / kGrow);
+  }
+  return report;
+}
+
+template class Newton<float>;
+template class Newton<double>;
+
+}  // namespace drumhead::multigrid

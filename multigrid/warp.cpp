@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/multigrid/warp.h>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/isa.h>
+
+#include "analysis.h"
+#include "nested.h"
+
+namespace drumhead::multigrid {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// On the default path d and kappa are capped where a further increase changes nothing that is seen.
+constexpr double kMostWeight = 1e6;
+constexpr double kMostKappa = 1e4;
+// The q-jump of the default path and of the preconditioner.
+constexpr double kJump = 0.005;
+
+/// OpenMP's thread number for the duration of a solve.
+class ThreadsInUse {
+ public:
+  explicit ThreadsInUse(int threads) : before_(omp_get_max_threads()) {
+    if (threads > 0) omp_set_num_threads(threads);
+  }
+  ~ThreadsInUse() { omp_set_num_threads(before_); }
+  ThreadsInUse(const ThreadsInUse&) = delete;
+  ThreadsInUse& operator=(const ThreadsInUse&) = delete;
+
+ private:
+  int before_;
+};
+
+void check(const WarpProblem& problem, const SolverOptions& options) {
+  const grid::Lattice& lattice = problem.lattice;
+  if (lattice.nx < 1 || lattice.ny < 1)
+    throw std::invalid_argument("lattice of " + std::to_string(lattice.nx) + " × " +
+                                std::to_string(lattice.ny) + " cells: must be at least 1 × 1");
+  if (!(lattice.cell_px > 0.0) || !(lattice.side_px > 0.0))
+    throw std::invalid_argument("lattice cell and picture side must be positive");
+  grid::check(problem.material, lattice);
+  if (!(options.tolerance_px >= 0.0) || !std::isfinite(options.tolerance_px))
+    throw std::invalid_argument("tolerance = " + std::to_string(options.tolerance_px) +
+                                ": must be at least 0 and finite");
+  if (options.threads < 0)
+    throw std::invalid_argument("threads = " + std::to_string(options.threads) + ": must be at least 0");
+}
+
+/// The material the default path solves: kappa capped, with a note.
+grid::Material capped(const grid::Material& material, SolveReport& report) {
+  grid::Material out = material;
+  bool changed = out.kappa > kMostKappa;
+  out.kappa = std::min(out.kappa, kMostKappa);
+  for (float& kappa : out.kappa_cells) {
+    changed = changed || kappa > float(kMostKappa);
+    kappa = std::min(kappa, float(kMostKappa));
+  }
+  if (changed)
+    report.notes.push_back("kappa above 1e4 mu was taken as 1e4 mu; exact constraints take it as it is");
+  return out;
+}
+
+bool has_pressure(const grid::Material& material) {
+  if (material.kappa_cells.empty()) return material.kappa > 0.0;
+  return std::ranges::any_of(material.kappa_cells, [](float kappa) { return kappa > 0.0f; });
+}
+
+/// Extent of the smallest source curve, in cells.
+double smallest_feature(const WarpProblem& problem) {
+  double smallest = std::max(problem.lattice.nx, problem.lattice.ny);
+  for (const grid::CurvePair& curve : problem.curves) {
+    grid::Point low = curve.source.front().control[0], high = low;
+    for (const grid::CubicBezier& segment : curve.source)
+      for (const grid::Point& p : segment.control) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
+    smallest = std::min(smallest, grid::length(high - low) / problem.lattice.cell_px);
+  }
+  return smallest;
+}
+
+template <class T>
+void export_state(const Hierarchy<T>& hierarchy, Solution& solution) {
+  const Level<T>& level = hierarchy[0];
+  const double h = solution.lattice.cell_px;
+  const auto ux = level.ux.view(), uy = level.uy.view(), p = level.pressure.view();
+  for (int j = 0; j <= level.ny; ++j)
+    for (int i = 0; i <= level.nx; ++i) {
+      solution.u_px.push_back(h * double(ux.at(i, j)));
+      solution.v_px.push_back(h * double(uy.at(i, j)));
+    }
+  if (!p) return;
+  for (int j = 0; j < level.ny; ++j)
+    for (int i = 0; i < level.nx; ++i) solution.pressure.push_back(double(p.at(i, j)));
+}
+
+template <class T>
+EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {
+  const Level<T>& level = hierarchy[0];
+  const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), {}, T(0));
+  const double area = double(level.nx) * double(level.ny);
+  EnergyReport energy{.elastic = sums.elastic / area, .volume = sums.volume / area};
+  // |q|²/(2 d len): the energy of a soft row's spring; the gap that the q-jump opens is not counted.
+  for (std::size_t k = 0; k < cuts.compliance.size(); ++k) {
+    const double x = double(level.q[2 * k]), y = double(level.q[2 * k + 1]);
+    energy.constraint += 0.5 * cuts.compliance[k] * (x * x + y * y) / area;
+  }
+  energy.total = energy.elastic + energy.volume + energy.constraint;
+  return energy;
+}
+
+/// Median seconds of a Hessian–vector product on the finest lattice.
+template <class T>
+double time_work_unit(Hierarchy<T>& hierarchy) {
+  Level<T>& level = hierarchy[0];
+  std::array<double, 5> seconds{};
+  for (double& s : seconds) {
+    const Clock::time_point start = Clock::now();
+    kernels::apply_hessian<T>(level.membrane(), level.d.view(), level.f.view());
+    s = seconds_since(start);
+  }
+  std::ranges::sort(seconds);
+  return seconds[seconds.size() / 2];
+}
+
+template <class T>
+void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution& solution) {
+  SolveReport& report = solution.report;
+  const Clock::time_point start = Clock::now();
+  const double most_weight =
+      options.exact ? std::numeric_limits<double>::infinity() : kMostWeight;
+  const grid::CutCells cuts = grid::cut(problem.curves, problem.lattice, most_weight);
+  const grid::Material material =
+      options.exact ? problem.material : capped(problem.material, report);
+  const SceneTraits traits{.pressure = has_pressure(material),
+                           .jump = options.exact ? 0.0 : kJump,
+                           .jump_inside = kJump};
+  grid::MemoryMeter meter;
+  Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
+  report.lattice_levels = hierarchy.size();
+  report.cut_seconds = seconds_since(start);
+
+  const Clock::time_point solving = Clock::now();
+  const NestedOptions nested{.exact = options.exact,
+                             .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
+                             .smallest_feature = smallest_feature(problem),
+                             .kappa = material.kappa,
+                             .progress = options.progress};
+  nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
+  report.solve_seconds = seconds_since(solving);
+
+  report.solver_bytes = meter.peak() + hierarchy.scratch().bytes();
+  report.energy = energies(hierarchy, cuts);
+  export_state(hierarchy, solution);
+  report.work_unit_seconds = time_work_unit(hierarchy);
+  report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
+}
+
+}  // namespace
+
+const char* name(Status status) {
+  switch (status) {
+    case Status::converged: return "converged";
+    case Status::stalled: return "stalled";
+    case Status::infeasible: return "infeasible";
+    case Status::limit: return "limit";
+    case Status::not_finite: return "not_finite";
+  }
+  return "";
+}
+
+Solution solve(const WarpProblem& problem, const SolverOptions& options) {
+  check(problem, options);
+  const ThreadsInUse threads(options.threads);
+  Solution solution{.lattice = problem.lattice};
+  solution.report.exact = options.exact;
+  solution.report.isa = kernels::name(kernels::current_isa());
+  solution.report.threads = omp_get_max_threads();
+  if (options.exact)
+    solve_in<double>(problem, options, solution);
+  else
+    solve_in<float>(problem, options, solution);
+  solution.report.curves = curve_gaps(solution, problem.curves);
+  solution.report.folds = find_folds(solution);
+  if (solution.pressure.empty()) solution.report.model = "harmonic";
+  return solution;
+}
+
+}  // namespace drumhead::multigrid
