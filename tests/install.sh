@@ -5,12 +5,13 @@
 # Where nothing is missing, it uses no network and no privileges.
 set -eu
 
-# The build, then the library, the driver, the tests, the benchmarks.
+# The build, then the library, the driver, the tests, the benchmarks. lib2geom's headers include
+# Boost's, but its package does not ask for them.
 packages="
   cmake ninja-build g++ pkg-config
   libxsimd-dev libeigen3-dev
   libopenimageio-dev openimageio-tools libpugixml-dev libtomlplusplus-dev libcli11-dev
-  nlohmann-json3-dev lib2geom-dev libcairo2-dev librsvg2-bin
+  nlohmann-json3-dev lib2geom-dev libboost-dev libcairo2-dev librsvg2-bin
   libgtest-dev
   libbenchmark-dev"
 if [ "${1:-}" = all ]; then
@@ -34,7 +35,7 @@ if [ "$(id -u)" != 0 ]; then
   }
   as_root=sudo
 fi
-install() {
+apt_install() {
   # $missing is a list of words.
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
 }
@@ -44,4 +45,4 @@ update() {
   $as_root apt-get update -q
 }
 apt-cache show $missing >/dev/null 2>&1 || update
-install || { update && install; }
+apt_install || { update && apt_install; }
