@@ -62,9 +62,10 @@ std::string help() {
     if (!key.flag) head += key.name == "picture" ? "PICTURE" : "CURVES.svg";
     else head += (key.name == "output" ? "-o, " : "") + flag_name(key);
     if (!key.value.empty()) head += " " + std::string(key.value);
-    std::string bound = key.value.empty() || key.path ? "" : "; " + std::string(key.bound);
+    std::string text_after = key.value.empty() || key.path ? "" : "; " + std::string(key.bound);
+    if (!key.fallback.empty()) text_after += " [" + std::string(key.fallback) + "]";
     text += head + std::string(head.size() < kIndent - 1 ? kIndent - head.size() : 1, ' ') +
-            wrapped(std::string(key.help) + bound, kIndent, kWidth) + "\n";
+            wrapped(std::string(key.help) + text_after, kIndent, kWidth) + "\n";
   }
   return text + kConventions;
 }
@@ -130,7 +131,7 @@ std::optional<Options> read_command_line(int argc, char** argv) {
   CLI::App app;
   app.set_version_flag("--version", std::string("drumhead ") + DRUMHEAD_VERSION);
   CLI::App* warp = app.add_subcommand("warp");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   Given given;
   add_flags(*warp, given);
   try {
@@ -143,6 +144,9 @@ std::optional<Options> read_command_line(int argc, char** argv) {
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     throw std::invalid_argument(line(error.what()) + " (see drumhead --help)");
+  }
+  if (!warp->parsed()) {
+    throw std::invalid_argument("no command was given; there is warp (see drumhead --help)");
   }
   return options_of(*warp, given);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "command_line.h"
 #include "warp_command.h"
@@ -11,7 +13,9 @@ int main(int argc, char** argv) {
     const auto options = read_command_line(argc, argv);
     return options ? run_warp(*options) : int(kConverged);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "drumhead: %s\n", error.what());
+    std::string line = error.what();  // names and data quoted in it may hold line ends
+    std::ranges::replace_if(line, [](unsigned char c) { return c < ' '; }, ' ');
+    std::fprintf(stderr, "drumhead: %s\n", line.c_str());
     return kBadInput;
   }
 }

@@ -50,6 +50,7 @@ struct Key {
   std::string_view value;  ///< what follows the flag, for the help; empty: a switch
   std::string_view bound;  ///< completes "must be …" in errors and stands in the help
   std::string_view help;
+  std::string_view fallback = {};  ///< as the help names it
   bool (*set)(const Value& value, Options& options);  ///< false: outside the bound
   bool flag = true;        ///< false: positional on the command line
   bool path = false;       ///< a scene's value is relative to the scene file

@@ -75,6 +75,7 @@ class Overlay {
 
   void draw_warped_source(const SvgCurve& curve) {
     add(curve.pair.source, [this](grid::Point p) { return warped(p); });
+    stroke(kShade, 3.0, true);
     stroke(kSource, 2.0);
   }
 

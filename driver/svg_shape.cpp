@@ -69,11 +69,16 @@ class ShapeReader {
   [[noreturn]] void fail(const std::string& what) const { document_.fail(element_, what); }
 
   void read_path() {
-    const char* data = element_.attribute("d").value();
+    const std::string_view data = element_.attribute("d").value();
     try {
-      Geom::SVGPathParser(builder_).parse(data);
-    } catch (const Geom::Exception& error) {
-      fail(std::string("broken path data: ") + error.what());
+      Geom::SVGPathParser(builder_).parse(data.data(), int(data.size()));
+    } catch (const std::exception&) {
+      // 2geom does not say where. Its block-wise feed, which could, loses digits at the ends of blocks.
+      const auto strange = data.find_first_not_of("MmZzLlHhVvCcSsQqTtAaEe0123456789+-., \t\r\n\f");
+      if (strange != data.npos) {
+        fail("broken path data at '" + std::string(data.substr(strange, 16)) + "'");
+      }
+      fail("broken path data '" + std::string(data.substr(0, 40)) + "'");
     }
   }
 

@@ -39,7 +39,8 @@ bool is_svg(const fs::path& file) { return file.extension() == ".svg"; }
 
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) ||
+  return fs::weakly_canonical(fs::absolute(a), error) ==
+             fs::weakly_canonical(fs::absolute(b), error) ||
          fs::equivalent(a, b, error);
 }
 

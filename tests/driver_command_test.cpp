@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// The executable on bad input: exit code 2, one line that names file, place and bound, no file left behind.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "driver_scratch.h"
+#include "image.h"
+
+namespace drumhead::driver {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class DriverCommand : public testing::Test {
+ protected:
+  DriverCommand() {
+    Image image{OIIO::ImageSpec(40, 40, 3, OIIO::TypeDesc::UINT8), std::vector<float>(4800, 0.5f)};
+    write_image(image, scratch / "photo.png");
+    scratch.write("curves.svg", drawing(40, 40, "<g id='source'><path id='a' d='M10 10 L30 10'/></g>"
+                                                "<g id='target'><path id='a-target' d='M10 12 L30 12'/></g>"));
+  }
+
+  /// Runs and demands exit code 2, one line with all of `parts`, and no new file.
+  void expect_refused(const Words& words, const Words& parts) {
+    const Words before = scratch.files();
+    const RunResult result = run_drumhead(scratch, words);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_TRUE(result.err.starts_with("drumhead: ")) << result.err;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << "\n  in " << result.err;
+    }
+    EXPECT_EQ(scratch.files(), before);
+  }
+
+  Scratch scratch;
+};
+
+TEST_F(DriverCommand, RefusesAnUnpairedPath) {
+  scratch.write("bad.svg", drawing(40, 40, "<g id='source'>\n<path id='brow' d='M1 1 L9 9'/></g>"));
+  expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png"},
+                 {"bad.svg:3: path 'brow'", "has no target"});
+}
+
+TEST_F(DriverCommand, RefusesBrokenPathData) {
+  scratch.write("bad.svg", drawing(40, 40, "<g id='pin'><path id='p7' d='M1 1 L9 x9'/></g>"));
+  expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png"},
+                 {"bad.svg:2: path 'p7': broken path data at 'x9'"});
+}
+
+TEST_F(DriverCommand, RefusesAMissingPicture) {
+  expect_refused({"warp", "none.png", "curves.svg", "-o", "out.png"}, {"none.png", "no such file"});
+}
+
+TEST_F(DriverCommand, RefusesMissingCurves) {
+  expect_refused({"warp", "photo.png", "none.svg", "-o", "out.png"}, {"none.svg: cannot be read"});
+  expect_refused({"warp", "photo.png", "-o", "out.png"}, {"photo.png: no CURVES.svg was given"});
+}
+
+TEST_F(DriverCommand, RefusesZeroCells) {
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--cells", "0"},
+                 {"--cells 0: must be a whole number from 1 to 16384"});
+}
+
+TEST_F(DriverCommand, RefusesNanInAScene) {
+  scratch.write("scene.toml", "picture = \"photo.png\"\ncurves = \"curves.svg\"\nkappa = nan\n");
+  expect_refused({"warp", "scene.toml", "-o", "out.png"},
+                 {"scene.toml:3: kappa = nan: must be a number, 0 or above, or inf"});
+}
+
+TEST_F(DriverCommand, RefusesAnUnwritableOutputBeforeItWorks) {
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "no/such/folder/out.png"},
+                 {"no/such/folder/out.png: cannot be written: No such file or directory"});
+  std::filesystem::create_directory(scratch / "folder.png");
+  expect_refused({"warp", "photo.png", "curves.svg", "--report", "good.json", "-o", "folder.png"},
+                 {"folder.png: cannot be written: not a regular file"});
+}
+
+TEST_F(DriverCommand, RefusesACurveOutsideTheLattice) {
+  scratch.write("bad.svg", drawing(40, 40, "<g id='pin'><path id='far' d='M1 1 L50 9'/></g>"));
+  expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png", "--cells", "10", "--margin", "0"},
+                 {"bad.svg:2: path 'far': leaves the lattice at (50.0, 9.0) px",
+                  "x 0.0 to 40.0 and y 0.0 to 40.0 px"});
+}
+
+TEST_F(DriverCommand, RefusesOutputsThatWouldReplaceOneAnotherOrAnInput) {
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "./photo.png"},
+                 {"./photo.png: an output must not replace an input"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--overlay", "./out.png"},
+                 {"out.png: two outputs must not be the same file"});
+}
+
+TEST_F(DriverCommand, RefusesUnknownWordsAndMissingOnes) {
+  expect_refused({}, {"no command"});
+  expect_refused({"wrap"}, {"wrap"});
+  expect_refused({"warp"}, {"no PICTURE"});
+  expect_refused({"warp", "photo.png", "curves.svg"}, {"no output"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--frobnicate"}, {"--frobnicate"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o"}, {"--output"});
+  expect_refused({"warp", "photo.png", "curves.svg", "more.svg", "-o", "out.png"}, {"'more.svg': too many"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.nothing"}, {"out.nothing: no picture format"});
+}
+
+TEST_F(DriverCommand, LeavesAnOldOutputAloneWhenItRefuses) {
+  scratch.write("out.png", "old");
+  scratch.write("bad.svg", drawing(40, 40, ""));
+  expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png"}, {"bad.svg: no curves"});
+  EXPECT_EQ(read_text(scratch / "out.png"), "old");
+}
+
+TEST_F(DriverCommand, SaysItsVersion) {
+  const RunResult result = run_drumhead(scratch, {"--version"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(result.out.starts_with("drumhead 0.")) << result.out;
+}
+
+}  // namespace
+}  // namespace drumhead::driver

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// The executable end to end: picture and curves in, picture, overlay, lattice and report out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "driver_scratch.h"
+#include "image.h"
+
+namespace drumhead::driver {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kWidth = 96, kHeight = 64;
+
+class DriverWarp : public testing::Test {
+ protected:
+  DriverWarp() {
+    Image image{OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::UINT8), {}};
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        image.pixels.insert(image.pixels.end(), {float(x) / 255, float(y) / 255, float(x * y % 256) / 255});
+      }
+    }
+    write_image(image, scratch / "photo.png");
+  }
+
+  void draw(const std::string& elements) {
+    scratch.write("curves.svg", drawing(kWidth, kHeight, elements));
+  }
+
+  /// A square of 20 pixels around the centre, moved to the right by `shift`.
+  void draw_shift(double shift) {
+    const std::string square = "M38 22 h20 v20 h-20 z";
+    draw("<g id='source'><path id='a' d='" + square + "'/></g>\n<g id='target' transform='translate(" +
+         std::to_string(shift) + ")'><path id='a-target' d='" + square + "'/></g>");
+  }
+
+  Scratch scratch;
+};
+
+TEST_F(DriverWarp, PinsAloneReturnThePicture) {
+  draw("<g id='pin'><circle cx='48' cy='32' r='20'/></g>");
+  const RunResult result = run_drumhead(
+      scratch, {"warp", "photo.png", "curves.svg", "--cells", "24", "-o", "out.png", "--report", "r.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(read_image(scratch / "out.png").pixels, read_image(scratch / "photo.png").pixels);
+  const Json report = Json::parse(read_text(scratch / "r.json"));
+  EXPECT_EQ(report["status"], "converged");
+  EXPECT_EQ(report["folds"]["folded_cells"], 0);
+}
+
+TEST_F(DriverWarp, ACurveIsCarriedToItsTarget) {
+  draw_shift(10);
+  const RunResult result =
+      run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "48", "-o", "out.png",
+                             "--lattice", "l.exr", "--report", "r.json", "--overlay", "o.png"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(scratch.files(), (std::vector<std::string>{"curves.svg", "l.exr", "o.png", "out.png",
+                                                       "photo.png", "r.json"}));
+  // Red codes the column: the square's interior moves with its outline.
+  const Image out = read_image(scratch / "out.png");
+  ASSERT_EQ(out.width(), kWidth);
+  EXPECT_NEAR(out.pixels[(32 * kWidth + 58) * 3] * 255, 48, 1.0);
+  EXPECT_NEAR(out.pixels[(32 * kWidth + 58) * 3 + 1] * 255, 32, 1.0);
+
+  const Json report = Json::parse(read_text(scratch / "r.json"));
+  ASSERT_EQ(report["curves"].size(), 1u);
+  EXPECT_EQ(report["curves"][0]["name"], "a");
+  EXPECT_NEAR(report["curves"][0]["length_px"], 80, 1e-6);
+  EXPECT_LT(report["curves"][0]["gap_rms_px"], 0.5);
+
+  const Image lattice = read_image(scratch / "l.exr");
+  EXPECT_EQ(lattice.width(), report["lattice"]["nx"].get<int>() + 1);
+  EXPECT_EQ(lattice.height(), report["lattice"]["ny"].get<int>() + 1);
+  EXPECT_EQ(lattice.spec.channelnames, (std::vector<std::string>{"u", "v"}));
+  const double cell = report["lattice"]["cell_px"];
+  const int i = int(std::lround((48 - report["lattice"]["origin_px"][0].get<double>()) / cell));
+  const int j = int(std::lround((32 - report["lattice"]["origin_px"][1].get<double>()) / cell));
+  const float* node = &lattice.pixels[std::size_t(j * lattice.width() + i) * 2];
+  EXPECT_NEAR(node[0], 10, 0.5);
+  EXPECT_NEAR(node[1], 0, 0.5);
+  EXPECT_EQ(lattice.pixels[0], 0.0f);
+
+  EXPECT_EQ(read_image(scratch / "o.png").width(), 11 * kWidth);  // small pictures are enlarged
+}
+
+TEST_F(DriverWarp, ASceneDoesWhatItsFlagsDo) {
+  draw_shift(6);
+  scratch.write("scene.toml", "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 32\nkappa = 10\n"
+                              "output = \"scene.png\"\nthreads = 1\n");
+  EXPECT_EQ(run_drumhead(scratch, {"warp", "scene.toml"}).exit_code, 0);
+  EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", "--kappa", "10",
+                                   "--threads", "2", "-o", "flags.png"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_image(scratch / "scene.png").pixels, read_image(scratch / "flags.png").pixels);
+}
+
+std::set<std::string> names(const Json& object) {
+  std::set<std::string> all;
+  for (const auto& [key, value] : object.items()) all.insert(key);
+  return all;
+}
+
+TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
+  using Names = std::set<std::string>;
+  draw_shift(6);
+  ASSERT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", "--report", "r.json"})
+                .exit_code,
+            0);
+  const std::string text = read_text(scratch / "r.json");
+  const Json r = Json::parse(text);
+  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "lattice", "levels", "work_units",
+                             "work_unit_seconds", "error_px", "curves", "folds", "energy", "seconds",
+                             "memory", "isa", "threads", "notes"}));
+  EXPECT_EQ(names(r["lattice"]), (Names{"nx", "ny", "cell_px", "origin_px", "levels"}));
+  ASSERT_FALSE(r["levels"].empty());
+  EXPECT_EQ(names(r["levels"].back()), (Names{"nx", "ny", "newton"}));
+  EXPECT_EQ(names(r["levels"].back()["newton"].at(0)),
+            (Names{"theta", "step", "krylov", "residual", "dx_rms_px", "dx_max_px", "inverted_cells"}));
+  EXPECT_EQ(names(r["error_px"]),
+            (Names{"algebraic_rms", "algebraic_max", "discretisation_rms", "discretisation_max"}));
+  EXPECT_EQ(names(r["curves"].at(0)), (Names{"name", "length_px", "gap_rms_px", "gap_max_px", "worst_px"}));
+  EXPECT_EQ(names(r["folds"]),
+            (Names{"inverted_cells", "folded_cells", "min_J", "min_corner_J", "places_px"}));
+  EXPECT_EQ(names(r["energy"]), (Names{"total", "elastic", "volume", "constraint"}));
+  EXPECT_EQ(names(r["seconds"]), (Names{"read", "cut", "solve", "render", "write", "total"}));
+  EXPECT_EQ(names(r["memory"]), (Names{"solver_bytes", "bytes_per_node", "peak_rss_bytes"}));
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find("inf"), std::string::npos);
+}
+
+TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
+  draw_shift(6);
+  const auto run = [&](const std::string& flag, const std::string& value) {
+    EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", flag, value,
+                                     "-o", "out.png", "--report", "r.json"})
+                  .exit_code,
+              0);
+    return std::pair{Json::parse(read_text(scratch / "r.json")), read_image(scratch / "out.png").pixels};
+  };
+  const auto [harmonic, warped] = run("--model", "harmonic");
+  const auto [soft, same] = run("--kappa", "0");
+  EXPECT_EQ(harmonic["model"], "harmonic");
+  EXPECT_EQ(soft["model"], "crpm");
+  EXPECT_EQ(harmonic["energy"], soft["energy"]);
+  EXPECT_EQ(warped, same);
+}
+
+}  // namespace
+}  // namespace drumhead::driver
