@@ -33,11 +33,18 @@ int start_level(const Hierarchy<T>& hierarchy, double smallest_feature) {
   return start;
 }
 
-KrylovOptions krylov_options(const NestedOptions& options) {
+template <class T>
+KrylovOptions krylov_options(const NestedOptions& options, const Level<T>& level, bool start) {
   KrylovOptions krylov;
+  // Small lattices can afford directions, and the states on the way to the first solution need them.
+  const bool small = level.nodes() < 20000;
+  if (start) {
+    krylov.directions = small ? 40 : 10;
+    krylov.most_cycles = 80;
+  }
   if (options.exact) {
-    krylov.directions = 40;
-    krylov.most_cycles = 120;
+    krylov.directions = small ? 150 : 40;
+    krylov.most_cycles = small ? 300 : 120;
     krylov.reduction = 1e-3;
   }
   return krylov;
@@ -59,7 +66,6 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
   const int start = start_level(hierarchy, options.smallest_feature);
   ClampSchedule clamp;
   NewtonOptions newton_options;
-  newton_options.krylov = krylov_options(options);
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
     auto progress = [&](int step) {
@@ -68,6 +74,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
         options.progress({level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
     };
     Newton<T> newton(hierarchy, l, meter);
+    newton_options.krylov = krylov_options(options, level, l == start);
     newton_options.most_steps = kLevelSteps;
     newton_options.share_of_discretisation = kShare;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
