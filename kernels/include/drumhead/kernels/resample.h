@@ -1,28 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A picture through the deformed lattice (Setaluri et al. 2014 only say "render"; everything here is ours).
+// A picture through the deformed lattice (Setaluri et al. 2014 only say "render"; everything here
+// is ours).
 //
-// Geometry. Node (i, j) of the lattice rests at origin + cell_px (i, j) and lies at rest + (u, v) after the
-// warp; inside a cell both are bilinear. An output pixel takes its colour from the rest position of the
-// point that came to lie under its centre: the cell's bilinear map is inverted exactly (a quadratic, both
-// roots; no iteration). Coordinates are continuous picture pixels: pixel (a, b) is centred at (a+½, b+½).
+// Geometry. Node (i, j) of the lattice rests at origin + cell_px (i, j) and lies at rest + (u, v)
+// after the warp; inside a cell both are bilinear. An output pixel takes its colour from the rest
+// position of the point that came to lie under its centre: the cell's bilinear map is inverted
+// exactly (a quadratic, both roots; no iteration). Coordinates are continuous picture pixels: pixel
+// (a, b) is centred at (a+½, b+½).
 //
-// Folds. Where several points lie under a pixel, one whose J = det ∂(warped)/∂(rest) is positive wins over
-// the others; among equals the cell of the later row, and in a row the later column. The rule does not see
-// tiles or threads. Points that no cell covers, outside the fixed boundary, are the identity.
+// Folds. Where several points lie under a pixel, one whose J = det ∂(warped)/∂(rest) is positive
+// wins over the others; among equals the cell of the later row, and in a row the later column. The
+// rule does not see tiles or threads. Points that no cell covers, outside the fixed boundary, are
+// the identity.
 //
-// Filter. With σ1 ≥ σ2 the singular values of ∂(source)/∂(output) and U its left singular vectors, the
-// picture is weighted by c(a) c(b), (a, b) = (U max(Σ, 1) Uᵀ)⁻¹ (source − centre), c Catmull–Rom, divided by
-// the weights' sum. One formula, continuous in the Jacobian: plain bicubic interpolation where nothing is
-// compressed (under rotation too), the output pixel's own cubic prefilter where it is compressed,
-// anisotropic in between. An elliptical Gaussian with as little aliasing blurs more, and does not return
-// the picture at the identity. c overshoots a step by at most 7.5 % per direction and nothing is clamped:
-// values below 0 or above the picture's range (alpha too) are for the writer to clamp.
-// From σ2 = 2 detail on the taps come from a pyramid, blended between levels, so that a pixel costs at most
-// about 64 detail² anisotropy taps. Where the displacement is exactly zero, or a whole number of pixels, the
-// source pixel is returned bit for bit.
+// Filter. With Σ the singular values of ∂(source)/∂(output) and U its left singular vectors, a
+// source pixel at distance d from the point weighs c(a) c(b), (a, b) = S⁻¹ d, S = U f(Σ) Uᵀ, c
+// Catmull–Rom; weights are divided by their sum. f(σ) = 1 up to a compression of σ = 1.125, σ from
+// 1.25 on, a line between. So there is one formula, continuous in the Jacobian: plain bicubic
+// interpolation where nothing is compressed, under rotation too, and the output pixel's own cubic
+// prefilter where it is, anisotropic in between. Catmull–Rom instead of a Gaussian ellipse because
+// it interpolates, keeps twice the contrast at half the output's band limit and sums to 1. It
+// overshoots a step by at most 7.5 % per direction; nothing is clamped, and values below 0 or above
+// the picture's range (alpha too) are for the writer to clamp. Beyond f(σ2) = 2 detail the taps
+// come from a pyramid, blended between levels: a pixel costs at most about 64 detail² anisotropy
+// taps. Where the displacement is zero, or the same whole number of pixels, the source pixel is
+// returned bit for bit.
 //
-// Channels are interleaved and filtered alike: premultiply alpha and linearise before, undo it afterwards.
+// Channels are interleaved and filtered alike: premultiply alpha and linearise before, undo it
+// afterwards.
 #include <cstddef>
 #include <memory>
 
@@ -40,8 +46,9 @@ struct ImageView {
   std::ptrdiff_t row_stride = 0;            ///< floats from row to row, ≥ width·channels
 };
 
-/// A picture to write. Its first pixel is pixel (left, top) of the source's frame, so that the padded domain
-/// (negative left and top) or a band of rows can be asked for; bands joined equal the whole, bit for bit.
+/// A picture to write. Its first pixel is pixel (left, top) of the source's frame, so that the
+/// padded domain (negative left and top) or a band of rows can be asked for; bands joined equal the
+/// whole, bit for bit.
 struct ImageTarget {
   float* data = nullptr;
   int width = 0, height = 0, channels = 0;  ///< ≥ 0; channels as the source's
@@ -49,22 +56,24 @@ struct ImageTarget {
   int left = 0, top = 0;
 };
 
-/// The deformed lattice: displacement of node (i, j) is u, v[j·(nx+1) + i] in picture pixels. A cell with a
-/// corner that is not finite covers nothing.
+/// The deformed lattice: displacement of node (i, j) is u, v[j·(nx+1) + i] in picture pixels. A
+/// cell with a corner that is not finite covers nothing.
 struct LatticeMapView {
   const double* u = nullptr;
   const double* v = nullptr;
-  int nx = 0, ny = 0;     ///< cells, ≥ 1; nx·ny < 2³¹
-  double cell_px = 1.0;   ///< > 0
-  Position origin_px;     ///< rest position of node (0, 0)
+  int nx = 0, ny = 0;    ///< cells, ≥ 1; nx·ny < 2³¹
+  double cell_px = 1.0;  ///< > 0
+  Position origin_px;    ///< rest position of node (0, 0)
 };
 
-/// The backward map to write, at pixels (left … left+width−1, top … top+height−1) of the output. An array
-/// that is null is left out; pixel (a, b) of the rectangle has index b·row_stride + a in each.
+/// The backward map to write, at pixels (left … left+width−1, top … top+height−1) of the output. An
+/// array that is null is left out; pixel (a, b) of the rectangle has index b·row_stride + a in
+/// each.
 struct BackwardMapTarget {
-  Position* source = nullptr;     ///< source position under the pixel's centre
-  float (*jacobian)[4] = nullptr; ///< ∂x/∂a, ∂x/∂b, ∂y/∂a, ∂y/∂b: source (x, y) by output (a, b)
-  signed char* side = nullptr;    ///< 1: J > 0; −1: only points with J ≤ 0 lie here; 0: outside, identity
+  Position* source = nullptr;  ///< source position under the pixel's centre
+  float (*jacobian)[4] = nullptr;  ///< ∂x/∂a, ∂x/∂b, ∂y/∂a, ∂y/∂b: source (x, y) by output (a, b)
+  signed char* side =
+      nullptr;  ///< 1: J > 0; −1: only points with J ≤ 0 lie here; 0: outside, identity
   int width = 0, height = 0;
   std::ptrdiff_t row_stride = 0;  ///< pixels from row to row, ≥ width
   int left = 0, top = 0;
@@ -79,29 +88,31 @@ enum class Border {
 
 struct ResampleOptions {
   Border border = Border::clamp;
-  /// Least footprint radius σ2, in pixels of the pyramid level that is sampled, 1…16. Twice as much takes
-  /// four times the taps where the warp compresses by more than 2 detail, and leaves half the (small)
-  /// error of the pyramid.
+  /// Least footprint radius σ2, in pixels of the pyramid level that is sampled, 1…16. Twice as much
+  /// takes four times the taps where the warp compresses by more than 2 detail, and leaves half the
+  /// (small) error of the pyramid.
   double detail = 2.0;
-  /// Greatest σ1/σ2 of a footprint, 1…64; σ2 is enlarged (blur across, never aliasing along) beyond it.
+  /// Greatest σ1/σ2 of a footprint, 1…64; σ2 is enlarged (blur across, never aliasing along) beyond
+  /// it.
   double anisotropy = 16.0;
   int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides. The result does not depend on it.
 };
 
-/// Renders one picture through one lattice; both must outlive it. The constructor allocates the boxes of
-/// 4 × 4 cells (3 bytes a cell) and, only if the lattice folds or compresses beyond 2 detail somewhere, the
-/// pyramid: a third of the picture. `render` allocates 0.3 MB a thread, whatever the size of the picture.
-/// Beyond std::bad_alloc nothing is thrown; sizes and options outside the bounds above are the caller's
-/// mistake (asserted).
+/// Renders one picture through one lattice; both must outlive it. The constructor allocates the
+/// boxes of 4 × 4 cells (3 bytes a cell) and, only if the lattice folds or compresses beyond 2
+/// detail somewhere, the pyramid: a third of the picture. `render` allocates 0.2 MB a thread,
+/// whatever the size of the picture. Beyond std::bad_alloc nothing is thrown; sizes and options
+/// outside the bounds above are the caller's mistake (asserted).
 class Resampler {
  public:
-  Resampler(const ImageView& source, const LatticeMapView& map, const ResampleOptions& options = {});
+  Resampler(const ImageView& source, const LatticeMapView& map,
+            const ResampleOptions& options = {});
   ~Resampler();
   Resampler(Resampler&&) noexcept;
   Resampler& operator=(Resampler&&) noexcept;
 
-  /// Writes every pixel of `out`, which must not overlap the source. May be called from several threads at
-  /// once.
+  /// Writes every pixel of `out`, which must not overlap the source. May be called from several
+  /// threads at once.
   void render(const ImageTarget& out) const;
 
   /// Bytes that the constructor allocated.
@@ -112,12 +123,12 @@ class Resampler {
   std::unique_ptr<State> state_;
 };
 
-/// The backward map alone, by the same inversion and fold rule. Allocates as the constructor above (without
-/// the pyramid) and `render` do.
+/// The backward map alone, by the same inversion and fold rule. Allocates as the constructor above
+/// (without the pyramid) and `render` do.
 void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int threads = 0);
 
-/// Where the warp takes a rest position (the forward map): rest + bilinear displacement inside the lattice,
-/// rest itself outside.
+/// Where the warp takes a rest position (the forward map): rest + bilinear displacement inside the
+/// lattice, rest itself outside.
 Position forward_position(const LatticeMapView& map, Position rest_px);
 
 }  // namespace drumhead::kernels

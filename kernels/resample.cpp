@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/kernels/resample.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "resample_boxes.h"
+#include "resample_filter.h"
+#include "resample_footprint.h"
+#include "resample_inverse.h"
+#include "resample_pyramid.h"
+#include "resample_threads.h"
+
+namespace drumhead::kernels {
+namespace {
+
+void check(const LatticeMapView& map) {
+  assert(map.u && map.v && map.nx >= 1 && map.ny >= 1 && map.cell_px > 0.0);
+  assert(std::size_t(map.nx) * std::size_t(map.ny) <
+         std::size_t(std::numeric_limits<std::int32_t>::max()));
+  static_cast<void>(map);
+}
+
+// Inverts the rectangle tile by tile and hands each to use(tile, a, b), (a, b) its first pixel's
+// place in the rectangle.
+template <class Use>
+void for_each_tile(const LatticeMapView& map, const BoxTree& tree, const ImageTarget& rectangle,
+                   int threads, const Use& use) {
+  constexpr int kSide = TileMap::kSide;
+  if (rectangle.width <= 0 || rectangle.height <= 0) return;
+  const int columns = (rectangle.width + kSide - 1) / kSide;
+  const int rows = (rectangle.height + kSide - 1) / kSide;
+  std::vector<TileMap> scratch(std::size_t(std::min(thread_count(threads), columns * rows)));
+  for_each_task(columns * rows, int(scratch.size()), [&](int k, int thread) {
+    const int a = k % columns * kSide, b = k / columns * kSide;
+    TileMap& tile = scratch[std::size_t(thread)];
+    tile.left = rectangle.left + a;
+    tile.top = rectangle.top + b;
+    tile.width = std::min(kSide, rectangle.width - a);
+    tile.height = std::min(kSide, rectangle.height - b);
+    invert_tile(map, tree, tile);
+    use(tile, a, b);
+  });
+}
+
+// The displacement's derivatives by rest at the corners of a cell bound the footprints in it.
+bool needs_pyramid(const LatticeMapView& map, const FilterBounds& bounds) {
+  const auto warped_edge = [&](int i, int j, int k, int l) {
+    const Position a = warped_node(map, i, j), b = warped_node(map, k, l);
+    return Position{(b.x - a.x) / map.cell_px, (b.y - a.y) / map.cell_px};
+  };
+  for (int j = 0; j < map.ny; ++j) {
+    for (int i = 0; i < map.nx; ++i) {
+      for (int corner = 0; corner < 4; ++corner) {
+        const int s = corner % 2, t = corner / 2;
+        const Position e = warped_edge(i, j + t, i + 1, j + t);
+        const Position f = warped_edge(i + s, j, i + s, j + 1);
+        const double J = e.x * f.y - e.y * f.x;
+        if (!(J > 1e-8)) return true;
+        const float inverse[4] = {float(f.y / J), float(-f.x / J), float(-e.y / J), float(e.x / J)};
+        if (footprint(inverse, bounds.anisotropy).least > kBlendFrom * bounds.detail) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+struct Resampler::State {
+  LatticeMapView map;
+  FilterBounds bounds;
+  int threads;
+  BoxTree tree;
+  Pyramid pyramid;
+};
+
+Resampler::Resampler(const ImageView& source, const LatticeMapView& map,
+                     const ResampleOptions& options) {
+  check(map);
+  assert(source.data && source.width >= 1 && source.height >= 1 && source.channels >= 1);
+  assert(source.row_stride >= std::ptrdiff_t(source.width) * source.channels);
+  assert(options.detail >= 1.0 && options.detail <= 16.0);
+  assert(options.anisotropy >= 1.0 && options.anisotropy <= 64.0);
+  const FilterBounds bounds{float(options.detail), float(options.anisotropy)};
+  state_ = std::make_unique<State>(
+      State{map, bounds, options.threads, BoxTree(map), Pyramid(source, options.border)});
+  if (needs_pyramid(map, bounds)) state_->pyramid.build(options.threads);
+}
+
+Resampler::~Resampler() = default;
+Resampler::Resampler(Resampler&&) noexcept = default;
+Resampler& Resampler::operator=(Resampler&&) noexcept = default;
+
+void Resampler::render(const ImageTarget& out) const {
+  assert(out.channels == state_->pyramid.level(0).channels);
+  for_each_tile(state_->map, state_->tree, out, state_->threads,
+                [&](const TileMap& tile, int a, int b) {
+                  float* first = out.data + b * out.row_stride + std::ptrdiff_t(a) * out.channels;
+                  filter_tile(state_->pyramid, state_->bounds, tile, first, out.row_stride);
+                });
+}
+
+std::size_t Resampler::bytes() const { return state_->tree.bytes() + state_->pyramid.bytes(); }
+
+void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int threads) {
+  check(map);
+  const BoxTree tree(map);
+  const ImageTarget rectangle{nullptr, out.width, out.height, 0, 0, out.left, out.top};
+  for_each_tile(map, tree, rectangle, threads, [&](const TileMap& tile, int a, int b) {
+    for (int y = 0; y < tile.height; ++y) {
+      const std::ptrdiff_t to = (b + y) * out.row_stride + a;
+      const int from = y * TileMap::kSide;
+      if (out.source) std::copy_n(tile.source + from, tile.width, out.source + to);
+      if (out.side) std::copy_n(tile.side + from, tile.width, out.side + to);
+      if (!out.jacobian) continue;
+      for (int x = 0; x < tile.width; ++x) {
+        std::copy_n(tile.jacobian[from + x], 4, out.jacobian[to + x]);
+      }
+    }
+  });
+}
+
+Position forward_position(const LatticeMapView& map, Position rest_px) {
+  const double s = (rest_px.x - map.origin_px.x) / map.cell_px;
+  const double t = (rest_px.y - map.origin_px.y) / map.cell_px;
+  if (!(s >= 0.0 && s <= map.nx && t >= 0.0 && t <= map.ny)) return rest_px;
+  const int i = std::min(int(s), map.nx - 1), j = std::min(int(t), map.ny - 1);
+  const double fs = s - i, ft = t - j;
+  const std::size_t n0 = std::size_t(j) * std::size_t(map.nx + 1) + std::size_t(i);
+  const std::size_t n1 = n0 + std::size_t(map.nx + 1);
+  const auto blend = [&](const double* d) {
+    const double near = d[n0] + fs * (d[n0 + 1] - d[n0]);
+    const double far = d[n1] + fs * (d[n1 + 1] - d[n1]);
+    return near + ft * (far - near);
+  };
+  return {rest_px.x + blend(map.u), rest_px.y + blend(map.v)};
+}
+
+}  // namespace drumhead::kernels

@@ -1,0 +1,5 @@
+# The resampler's tests.
+drumhead_test(NAME kernels_resample_test
+              SOURCES kernels_resample_test.cpp
+              LINK drumhead::kernels
+              LABEL unit)
