@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atomic_file.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -8,8 +10,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <utility>
 
 namespace drumhead::driver {

@@ -21,11 +21,11 @@ constexpr const char* kAbout =
     "and a nonlinear elastic membrane decides where everything else goes.\n";
 
 constexpr const char* kConventions = R"(
-The drawing. Layers (or groups) named source and target, by inkscape:label or id, hold paths and shapes
-that are paired by their own label or id; outside layers the suffixes -source and -target do the same.
-What lies in a layer named pin holds still. Hidden layers are read like others; all else is art. The
-viewBox is stretched onto the picture. Two paths with the same number of segments correspond segment
-by segment, others by arc length; closed paths keep their start point.
+The drawing. Layers (or groups) named source and target, by inkscape:label or id, hold paths and
+shapes that are paired by their own label or id; outside layers the suffixes -source and -target do
+the same. What lies in a layer named pin holds still. Hidden layers are read like others; all else
+is art. The viewBox is stretched onto the picture. Two paths with the same number of segments
+correspond segment by segment, others by arc length; closed paths keep their start point.
 
 The scene. TOML; every flag is a key of the same name with _ for - (picture and curves too), and
 [[curve]] tables with name, weight and turn (degrees, clockwise) speak of single curves. Paths are
@@ -35,7 +35,8 @@ Coordinates. Picture pixels, continuous: 0 at the left and top edge, pixel centr
 y down. The lattice covers the picture and its margin, and its outer edge does not move. --lattice
 writes (nx+1) x (ny+1) pixels, one a node.
 
-Exit code. 0 converged; 1 not converged, the best result is written; 2 bad input, nothing is written.
+Exit code. 0 converged; 1 not converged, the best result is written; 2 bad input, nothing is
+written.
 )";
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
@@ -59,8 +60,10 @@ std::string help() {
   std::string text = std::string(kAbout) + "\n" + kUsage + "\n";
   for (const Key& key : keys()) {
     std::string head = "  ";
-    if (!key.flag) head += key.name == "picture" ? "PICTURE" : "CURVES.svg";
-    else head += (key.name == "output" ? "-o, " : "") + flag_name(key);
+    if (!key.flag)
+      head += key.name == "picture" ? "PICTURE" : "CURVES.svg";
+    else
+      head += (key.name == "output" ? "-o, " : "") + flag_name(key);
     if (!key.value.empty()) head += " " + std::string(key.value);
     std::string text_after = key.value.empty() || key.path ? "" : "; " + std::string(key.bound);
     if (!key.fallback.empty()) text_after += " [" + std::string(key.fallback) + "]";
@@ -98,14 +101,15 @@ Options options_of(const CLI::App& warp, const Given& given) {
   Options options;
   const auto& files = given.files;
   if (files.empty()) throw std::invalid_argument("warp: no PICTURE and no SCENE.toml was given");
-  const bool scene = std::filesystem::path(files[0]).extension() == ".toml";
+  const bool scene = has_extension(files[0], ".toml");
   if (files.size() > (scene ? 1u : 2u)) {
     throw std::invalid_argument("'" + files[scene ? 1 : 2] + "': too many files; " +
                                 (scene ? "a scene names its picture and curves itself"
                                        : "a PICTURE and its CURVES.svg are expected"));
   }
   if (scene) {
-    read_scene(files[0], options);
+    options.scene = files[0];
+    read_scene(options.scene, options);
   } else {
     options.picture = files[0];
     if (files.size() == 2) options.curves = files[1];

@@ -52,10 +52,11 @@ void check_inside(const grid::Lattice& lattice, const SvgCurve& curve) {
   if (distance <= 1e-6 * lattice.cell_px) return;
   const grid::Point low = lattice.rest_px(0, 0), high = lattice.rest_px(lattice.nx, lattice.ny);
   char text[240];
-  std::snprintf(text, sizeof text,
-                ": leaves the lattice at (%.1f, %.1f) px; it must stay within x %.1f to %.1f and y %.1f "
-                "to %.1f px (see --margin)",
-                worst.x, worst.y, low.x, high.x, low.y, high.y);
+  std::snprintf(
+      text, sizeof text,
+      ": leaves the lattice at (%.1f, %.1f) px; it must stay within x %.1f to %.1f and y %.1f "
+      "to %.1f px (see --margin)",
+      worst.x, worst.y, low.x, high.x, low.y, high.y);
   throw std::invalid_argument(curve.place + text);
 }
 
@@ -77,8 +78,8 @@ std::vector<grid::CurvePair> apply_settings(const Options& options,
       if (table.turn_degrees) pair.turn_degrees = *table.turn_degrees;
     }
     if (!found) {
-      throw std::invalid_argument(table.place + ": [[curve]] '" + table.name + "': " +
-                                  options.curves.string() + " has no curve of this name");
+      throw std::invalid_argument(table.place + ": [[curve]] '" + table.name +
+                                  "': " + options.curves.string() + " has no curve of this name");
     }
   }
   return pairs;

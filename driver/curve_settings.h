@@ -9,14 +9,16 @@
 
 namespace drumhead::driver {
 
-/// The pairs with their weights and turns: --weight for pairs (pins stay exactly hard), then the scene's
+/// The pairs with their weights and turns: --weight for pairs (pins stay exactly hard), then the
+/// scene's
 /// [[curve]] tables, whose name is a pair's or that of all its subpaths.
-/// Throws std::invalid_argument naming file and line of a table whose curve the drawing does not have.
+/// Throws std::invalid_argument naming file and line of a table whose curve the drawing does not
+/// have.
 std::vector<grid::CurvePair> apply_settings(const Options& options,
                                             const std::vector<SvgCurve>& curves);
 
-/// Throws std::invalid_argument naming the curve, its outermost point and the lattice's extent where a
-/// source leaves the lattice. Targets may.
+/// Throws std::invalid_argument naming the curve, its outermost point and the lattice's extent
+/// where a source leaves the lattice. Targets may.
 void check_inside(const grid::Lattice& lattice, const std::vector<SvgCurve>& curves);
 
 }  // namespace drumhead::driver

@@ -37,17 +37,26 @@ void divide_alpha(Image& image) {
 }
 
 /// Orientation as EXIF numbers it: the stored pixel (a, b) of the upright pixel (x, y).
-std::pair<int, int> stored_position(int orientation, int stored_width, int stored_height, int x, int y) {
+std::pair<int, int> stored_position(int orientation, int stored_width, int stored_height, int x,
+                                    int y) {
   const int a = stored_width - 1, b = stored_height - 1;
   switch (orientation) {
-    case 2: return {a - x, y};
-    case 3: return {a - x, b - y};
-    case 4: return {x, b - y};
-    case 5: return {y, x};
-    case 6: return {y, b - x};
-    case 7: return {a - y, b - x};
-    case 8: return {a - y, x};
-    default: return {x, y};
+    case 2:
+      return {a - x, y};
+    case 3:
+      return {a - x, b - y};
+    case 4:
+      return {x, b - y};
+    case 5:
+      return {y, x};
+    case 6:
+      return {y, b - x};
+    case 7:
+      return {a - y, b - x};
+    case 8:
+      return {a - y, x};
+    default:
+      return {x, y};
   }
 }
 
@@ -71,7 +80,8 @@ void turn_upright(Image& image) {
   for (int y = 0; y < spec.height; ++y) {
     for (int x = 0; x < spec.width; ++x) {
       const auto [a, b] = stored_position(orientation, width, height, x, y);
-      const auto in = image.pixels.begin() + (std::ptrdiff_t(b) * width + a) * std::ptrdiff_t(channels);
+      const auto in =
+          image.pixels.begin() + (std::ptrdiff_t(b) * width + a) * std::ptrdiff_t(channels);
       out = std::copy_n(in, channels, out);
     }
   }
@@ -98,11 +108,13 @@ void flatten(Image& image) {
 /// What described the input's file, not its picture.
 void adapt_to_format(OIIO::ImageSpec& spec, const std::string& format) {
   spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-  for (const char* name : {"textureformat", "openexr:levelmode", "thumbnail_image", "oiio:subimages",
-                           "oiio:ConstantColor", "oiio:AverageColor", "oiio:SHA-1"}) {
+  for (const char* name :
+       {"textureformat", "openexr:levelmode", "thumbnail_image", "oiio:subimages",
+        "oiio:ConstantColor", "oiio:AverageColor", "oiio:SHA-1"}) {
     spec.erase_attribute(name);
   }
-  if (spec.get_int_attribute("oiio:BitsPerSample", 8) < 8) spec.erase_attribute("oiio:BitsPerSample");
+  if (spec.get_int_attribute("oiio:BitsPerSample", 8) < 8)
+    spec.erase_attribute("oiio:BitsPerSample");
   if (spec.get_string_attribute("drumhead:format") != format) {
     spec.erase_attribute("compression");
     spec.erase_attribute("oiio:BitsPerSample");
@@ -132,7 +144,8 @@ Image read_image(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, error)) fail("no such file");
   if (!std::filesystem::is_regular_file(file, error)) fail("not a regular file");
   OIIO::ImageSpec hints;
-  hints.attribute(kUnassociated, 1);  // multiplied here, in float: in 8 bits dark colours would be lost
+  hints.attribute(kUnassociated,
+                  1);  // multiplied here, in float: in 8 bits dark colours would be lost
   const auto input = OIIO::ImageInput::open(file.string(), &hints);
   if (!input) fail(OIIO::geterror());
   Image image{input->spec(), {}};
@@ -159,25 +172,25 @@ void check_writable_format(const std::filesystem::path& file) {
   }
 }
 
-void write_image(const Image& image, const std::filesystem::path& file) {
+void write_image(Image image, const std::filesystem::path& file) {
   const auto output = OIIO::ImageOutput::create(file.string());
   if (!output) fail_to_write(file, OIIO::geterror());
   const std::string format = output->format_name();
-  Image out = image;
-  if (out.spec.alpha_channel >= 0) {
-    // OpenEXR's alpha is always multiplied; TIFF has both kinds; the others have only the plain kind.
-    const bool was_plain = out.spec.get_int_attribute(kUnassociated);
+  if (image.spec.alpha_channel >= 0) {
+    // OpenEXR's alpha is always multiplied; TIFF has both kinds; the others have only the plain
+    // kind.
+    const bool was_plain = image.spec.get_int_attribute(kUnassociated);
     if (!output->supports("alpha")) {
-      flatten(out);
+      flatten(image);
     } else if (format == "openexr" || (format == "tiff" && !was_plain)) {
-      out.spec.erase_attribute(kUnassociated);
+      image.spec.erase_attribute(kUnassociated);
     } else {
-      divide_alpha(out);
-      out.spec.attribute(kUnassociated, 1);
+      divide_alpha(image);
+      image.spec.attribute(kUnassociated, 1);
     }
   }
-  adapt_to_format(out.spec, format);
-  write_pixels(*output, out.spec, out.pixels, file);
+  adapt_to_format(image.spec, format);
+  write_pixels(*output, image.spec, image.pixels, file);
 }
 
 void write_float_exr(int width, int height, const std::vector<std::string>& channels,

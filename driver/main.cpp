@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 
 #include "command_line.h"
@@ -12,9 +13,14 @@ int main(int argc, char** argv) {
   try {
     const auto options = read_command_line(argc, argv);
     return options ? run_warp(*options) : int(kConverged);
+  } catch (const std::bad_alloc&) {
+    std::fputs("drumhead: not enough memory; fewer --cells or a smaller picture need less\n",
+               stderr);
+    return kBadInput;
   } catch (const std::exception& error) {
     std::string line = error.what();  // names and data quoted in it may hold line ends
-    std::ranges::replace_if(line, [](unsigned char c) { return c < ' '; }, ' ');
+    std::ranges::replace_if(
+        line, [](unsigned char c) { return c < ' '; }, ' ');
     std::fprintf(stderr, "drumhead: %s\n", line.c_str());
     return kBadInput;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -46,7 +47,7 @@ bool set_path(const Value& value, const char* extension, std::filesystem::path& 
   const auto* text = std::get_if<std::string>(&value);
   if (!text || text->empty()) return false;
   const std::filesystem::path path = *text;
-  if (*extension && path.extension() != extension) return false;
+  if (*extension && !has_extension(path, extension)) return false;
   field = path;
   return true;
 }
@@ -100,66 +101,112 @@ bool set_file(const Value& value, Options& o) {
 constexpr std::string_view kAnyPath = "the path of a file";
 
 const std::array kKeys = {
-    Key{.name = "picture", .value = "", .bound = kAnyPath,
+    Key{.name = "picture",
+        .value = "",
+        .bound = kAnyPath,
         .help = "PNG, JPEG, TIFF, EXR …, turned upright as its EXIF says; .svg is rasterised",
-        .set = set_file<&Options::picture>, .flag = false, .path = true},
-    Key{.name = "curves", .value = "", .bound = kAnyPath,
+        .set = set_file<&Options::picture>,
+        .flag = false,
+        .path = true},
+    Key{.name = "curves",
+        .value = "",
+        .bound = kAnyPath,
         .help = "SVG with the layers source, target and pin",
-        .set = set_file<&Options::curves>, .flag = false, .path = true},
-    Key{.name = "cells", .value = "N", .bound = "a whole number from 1 to 16384",
+        .set = set_file<&Options::curves>,
+        .flag = false,
+        .path = true},
+    Key{.name = "cells",
+        .value = "N",
+        .bound = "a whole number from 1 to 16384",
         .help = "cells across the longer side of the picture",
-        .fallback = "256", .set = set_cells},
-    Key{.name = "cell_size", .value = "PX", .bound = "a finite number above 0",
+        .fallback = "256",
+        .set = set_cells},
+    Key{.name = "cell_size",
+        .value = "PX",
+        .bound = "a finite number above 0",
         .help = "side of a cell in picture pixels, instead of --cells",
         .set = [](const Value& v, Options& o) { return set_positive(v, o.lattice.cell_px); }},
-    Key{.name = "margin", .value = "FRACTION", .bound = "a finite number, 0 or above",
-        .help = "margin on every side, as a fraction of the longer side; 0 holds the picture's edge",
+    Key{.name = "margin",
+        .value = "FRACTION",
+        .bound = "a finite number, 0 or above",
+        .help =
+            "margin on every side, as a fraction of the longer side; 0 holds the picture's edge",
         .fallback = "0.1",
         .set = set_margin},
-    Key{.name = "model", .value = "M", .bound = "one of: crpm, harmonic",
+    Key{.name = "model",
+        .value = "M",
+        .bound = "one of: crpm, harmonic",
         .help = "membrane: crpm, or harmonic, which is crpm with kappa 0",
-        .fallback = "crpm", .set = set_model},
-    Key{.name = "mu", .value = "V", .bound = "a finite number above 0",
+        .fallback = "crpm",
+        .set = set_model},
+    Key{.name = "mu",
+        .value = "V",
+        .bound = "a finite number above 0",
         .help = "stiffness, the unit of --kappa and --weight",
         .fallback = "1",
         .set = [](const Value& v, Options& o) { return set_positive(v, o.mu); }},
-    Key{.name = "kappa", .value = "V", .bound = "a number, 0 or above, or inf",
+    Key{.name = "kappa",
+        .value = "V",
+        .bound = "a number, 0 or above, or inf",
         .help = "resistance to change of area, in units of mu; inf: incompressible",
         .fallback = "1",
         .set = set_kappa},
-    Key{.name = "weight", .value = "D", .bound = "a number above 0, or inf",
-        .help = "stiffness of the curves per length, in units of mu per longer side of the picture; "
-                "inf: they are met exactly",
+    Key{.name = "weight",
+        .value = "D",
+        .bound = "a number above 0, or inf",
+        .help =
+            "stiffness of the curves per length, in units of mu per longer side of the picture; "
+            "inf: they are met exactly, as pins always are",
         .fallback = "inf",
         .set = set_weight},
-    Key{.name = "exact", .value = "", .bound = "true or false",
+    Key{.name = "exact",
+        .value = "",
+        .bound = "true or false",
         .help = "curves met to rounding, in double precision; slower",
         .set = [](const Value& v, Options& o) { return set_switch(v, o.exact); }},
-    Key{.name = "tolerance", .value = "PX", .bound = "a finite number above 0, or auto",
+    Key{.name = "tolerance",
+        .value = "PX",
+        .bound = "a finite number above 0, or auto",
         .help = "error that the solver may leave, RMS in picture pixels; auto: a tenth of the "
                 "lattice's own error",
         .fallback = "auto",
         .set = set_tolerance},
-    Key{.name = "threads", .value = "N", .bound = "a whole number from 1 to 4096",
+    Key{.name = "threads",
+        .value = "N",
+        .bound = "a whole number from 1 to 4096",
         .help = "processor threads",
         .fallback = "as OpenMP decides",
         .set = [](const Value& v, Options& o) { return set_whole(v, kMostThreads, o.threads); }},
-    Key{.name = "output", .value = "FILE", .bound = kAnyPath,
-        .help = "the warped picture, in the format of its extension, size and depth of the input",
-        .set = set_file<&Options::output>, .path = true},
-    Key{.name = "overlay", .value = "PNG", .bound = "the path of a .png file",
+    Key{.name = "output",
+        .value = "FILE",
+        .bound = kAnyPath,
+        .help =
+            "the warped picture, in the format of its extension, size and depth of the input; over "
+            "white where the format has no alpha",
+        .set = set_file<&Options::output>,
+        .path = true},
+    Key{.name = "overlay",
+        .value = "PNG",
+        .bound = "the path of a .png file",
         .help = "the warped picture under the deformed lattice, warped curves and targets",
         .set = [](const Value& v, Options& o) { return set_path(v, ".png", o.overlay); },
         .path = true},
-    Key{.name = "lattice", .value = "EXR", .bound = "the path of an .exr file",
+    Key{.name = "lattice",
+        .value = "EXR",
+        .bound = "the path of an .exr file",
         .help = "displacement of every lattice node: float channels u, v in picture pixels, first "
                 "row the top",
         .set = [](const Value& v, Options& o) { return set_path(v, ".exr", o.lattice_file); },
         .path = true},
-    Key{.name = "report", .value = "JSON", .bound = kAnyPath,
+    Key{.name = "report",
+        .value = "JSON",
+        .bound = kAnyPath,
         .help = "convergence, errors, gap of every curve, folds, energy, seconds, memory",
-        .set = set_file<&Options::report>, .path = true},
-    Key{.name = "quiet", .value = "", .bound = "true or false",
+        .set = set_file<&Options::report>,
+        .path = true},
+    Key{.name = "quiet",
+        .value = "",
+        .bound = "true or false",
         .help = "nothing on the terminal but warnings and errors",
         .set = [](const Value& v, Options& o) { return set_switch(v, o.quiet); }},
 };
@@ -181,6 +228,12 @@ std::span<const Key> keys() { return kKeys; }
 const Key* find_key(std::string_view name) {
   const auto found = std::ranges::find(kKeys, name, &Key::name);
   return found == kKeys.end() ? nullptr : &*found;
+}
+
+bool has_extension(const std::filesystem::path& file, std::string_view extension) {
+  const std::string own = file.extension();
+  return std::ranges::equal(own, extension,
+                            [](unsigned char a, char b) { return std::tolower(a) == b; });
 }
 
 std::string flag_name(const Key& key) {

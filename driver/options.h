@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything a run of `drumhead warp` can be told, and the one table of keys from which the command line,
-// the scene file, the help text and the error messages are all made: a flag --cell-size and a scene's key
-// cell_size are the same entry, with the same bound.
+// Everything a run of `drumhead warp` can be told, and the one table of keys from which the command
+// line, the scene file, the help text and the error messages are all made: a flag --cell-size and a
+// scene's key cell_size are the same entry, with the same bound.
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -20,24 +20,25 @@ namespace drumhead::driver {
 
 /// What a scene says about single curves ([[curve]]).
 struct CurveOverride {
-  std::string name;                    ///< as in the drawing
-  std::optional<double> weight;        ///< in units of mu per longer picture side, > 0, infinity allowed
+  std::string name;              ///< as in the drawing
+  std::optional<double> weight;  ///< in units of mu per longer picture side, > 0, infinity allowed
   std::optional<double> turn_degrees;  ///< clockwise on the screen
   std::string place;                   ///< file and line, for errors
 };
 
 struct Options {
+  std::filesystem::path scene;    ///< the scene file, where there is one
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
-  std::filesystem::path curves;   ///< SVG; the picture itself where that is an SVG and this is empty
+  std::filesystem::path curves;  ///< SVG; the picture itself where that is an SVG and this is empty
   std::filesystem::path output, overlay, lattice_file, report;  ///< empty: not written
   grid::LatticeOptions lattice;
-  std::string model = "crpm";     ///< crpm or harmonic
+  std::string model = "crpm";  ///< crpm or harmonic
   double mu = grid::Material{}.mu;
-  double kappa = grid::Material{}.kappa;                      ///< in units of mu
-  double weight = std::numeric_limits<double>::infinity();    ///< of every curve without its own
+  double kappa = grid::Material{}.kappa;                    ///< in units of mu
+  double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own
   bool exact = false;
-  double tolerance_px = 0.0;      ///< 0: a tenth of the estimated discretisation error
-  int threads = 0;                ///< 0: as OpenMP decides
+  double tolerance_px = 0.0;  ///< 0: a tenth of the estimated discretisation error
+  int threads = 0;            ///< 0: as OpenMP decides
   bool quiet = false;
   std::vector<CurveOverride> overrides;
 };
@@ -50,10 +51,10 @@ struct Key {
   std::string_view value;  ///< what follows the flag, for the help; empty: a switch
   std::string_view bound;  ///< completes "must be …" in errors and stands in the help
   std::string_view help;
-  std::string_view fallback = {};  ///< as the help names it
+  std::string_view fallback = {};                     ///< as the help names it
   bool (*set)(const Value& value, Options& options);  ///< false: outside the bound
-  bool flag = true;        ///< false: positional on the command line
-  bool path = false;       ///< a scene's value is relative to the scene file
+  bool flag = true;                                   ///< false: positional on the command line
+  bool path = false;  ///< a scene's value is relative to the scene file
 };
 
 /// All keys, in the order of the help.
@@ -62,11 +63,14 @@ std::span<const Key> keys();
 /// nullptr if there is no such key.
 const Key* find_key(std::string_view name);
 
+/// Whether a file's name ends in `extension` (".svg"), in small letters or capitals.
+bool has_extension(const std::filesystem::path& file, std::string_view extension);
+
 /// "--cell-size" for cell_size.
 std::string flag_name(const Key& key);
 
-/// The text after a flag as the value that the key may take: a number where it is one (inf and nan count),
-/// else the text itself.
+/// The text after a flag as the value that the key may take: a number where it is one (inf and nan
+/// count), else the text itself.
 Value value_of(const Key& key, const std::string& text);
 
 /// Sets a key. Throws std::invalid_argument "`place`: must be `bound`".

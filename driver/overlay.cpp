@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "overlay.h"
 
-#include <algorithm>
 #include <cairo.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -14,14 +14,14 @@ namespace drumhead::driver {
 namespace {
 
 constexpr double kGreatestSide = 16384, kLeastSide = 500, kEnlargedSide = 1000;
-constexpr double kLineGap = 12;         // pixels of the overlay
-constexpr double kLineShare = 1.0 / 48; // of its longer side
+constexpr double kLineGap = 12;          // pixels of the overlay
+constexpr double kLineShare = 1.0 / 48;  // of its longer side
 
 struct Colour {
   double red = 0, green = 0, blue = 0, alpha = 1;
 };
 constexpr Colour kLattice{1, 1, 1, 0.6}, kShade{0, 0, 0, 0.35};
-constexpr Colour kTarget{0, 0.85, 1, 1}, kSource{1, 0.45, 0, 1}, kPin{1, 1, 1, 1};
+constexpr Colour kTarget{0, 0.85, 1, 1}, kSource{0.95, 0.1, 0.1, 1}, kPin{1, 1, 1, 1};
 
 double scale_of(double side) {
   if (side > kGreatestSide) return kGreatestSide / side;
@@ -69,13 +69,12 @@ class Overlay {
 
   void draw_target(const SvgCurve& curve) {
     add(curve.pair.target, [](grid::Point p) { return p; });
-    stroke(kShade, 7.0, true);
-    stroke(curve.pin ? kPin : kTarget, 5.0);
+    stroke(kShade, 8.5, true);
+    stroke(curve.pin ? kPin : kTarget, curve.pin ? 4.0 : 6.5);
   }
 
   void draw_warped_source(const SvgCurve& curve) {
     add(curve.pair.source, [this](grid::Point p) { return warped(p); });
-    stroke(kShade, 3.0, true);
     stroke(kSource, 2.0);
   }
 
@@ -86,8 +85,8 @@ class Overlay {
       status = cairo_surface_write_to_png(surface_.get(), file.c_str());
     }
     if (status != CAIRO_STATUS_SUCCESS) {
-      throw std::runtime_error(file.string() + ": cannot be written: " +
-                               cairo_status_to_string(status));
+      throw std::runtime_error(file.string() +
+                               ": cannot be written: " + cairo_status_to_string(status));
     }
   }
 
@@ -104,11 +103,13 @@ class Overlay {
     unsigned char* const data = cairo_image_surface_get_data(base.get());
     if (!data) throw std::runtime_error("overlay: the picture is too large");
     for (int y = 0; y < height; ++y) {
-      auto* row = reinterpret_cast<std::uint32_t*>(data + std::ptrdiff_t(y) *
-                                                              cairo_image_surface_get_stride(base.get()));
+      auto* row = reinterpret_cast<std::uint32_t*>(
+          data + std::ptrdiff_t(y) * cairo_image_surface_get_stride(base.get()));
       for (int x = 0; x < width; ++x) {
         const float* p = &picture.pixels[(std::size_t(y) * width + x) * channels];
-        const auto value = [&](int c) { return std::uint32_t(shown(p[colours < 3 ? 0 : c], linear)); };
+        const auto value = [&](int c) {
+          return std::uint32_t(shown(p[colours < 3 ? 0 : c], linear));
+        };
         const std::uint32_t a = alpha >= 0 ? shown(p[alpha], false) : 255;
         const auto kept = [a](std::uint32_t colour) { return std::min(colour, a); };
         row[x] = a << 24 | kept(value(0)) << 16 | kept(value(1)) << 8 | kept(value(2));
@@ -130,8 +131,10 @@ class Overlay {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return;
     // Cairo's coordinates have 24 bits before the point.
     p.x = std::clamp(p.x, -1e5, 1e5), p.y = std::clamp(p.y, -1e5, 1e5);
-    if (first) cairo_move_to(context_.get(), p.x, p.y);
-    else cairo_line_to(context_.get(), p.x, p.y);
+    if (first)
+      cairo_move_to(context_.get(), p.x, p.y);
+    else
+      cairo_line_to(context_.get(), p.x, p.y);
   }
 
   /// The chain's points carried by `place`, dense enough to follow every cell.
@@ -148,12 +151,15 @@ class Overlay {
     }
   }
 
-  /// Strokes the current path, `width` in units that grow with the picture: 1 at 1200 pixels or less.
+  /// Strokes the current path, `width` in units that grow with the picture: 1 at 1200 pixels or
+  /// less.
   void stroke(Colour colour, double width, bool keep = false) {
     cairo_set_source_rgba(context_.get(), colour.red, colour.green, colour.blue, colour.alpha);
     cairo_set_line_width(context_.get(), width * std::max(1.0, side_ / 1200) / scale_);
-    if (keep) cairo_stroke_preserve(context_.get());
-    else cairo_stroke(context_.get());
+    if (keep)
+      cairo_stroke_preserve(context_.get());
+    else
+      cairo_stroke(context_.get());
   }
 
   const multigrid::Solution& solution_;

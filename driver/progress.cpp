@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "progress.h"
 
+#include <unistd.h>
 #include <algorithm>
 #include <cstdio>
-#include <unistd.h>
 
 namespace drumhead::driver {
 
@@ -42,15 +42,16 @@ void Progress::summarise(const multigrid::Solution& solution, const Seconds& sec
   if (!talking_) return;
   clear();
   const multigrid::SolveReport& report = solution.report;
-  std::fprintf(stderr,
-               "%s in %.2f s (read %.2f, cut %.2f, solve %.2f, render %.2f, write %.2f): %d x %d cells, "
-               "%.0f work units\n",
-               multigrid::name(report.status), seconds.total, seconds.read, seconds.cut, seconds.solve,
-               seconds.render, seconds.write, solution.lattice.nx, solution.lattice.ny,
-               report.work_units);
+  std::fprintf(
+      stderr,
+      "%s in %.2f s (read %.2f, cut %.2f, solve %.2f, render %.2f, write %.2f): %d x %d cells, "
+      "%.0f work units\n",
+      multigrid::name(report.status), seconds.total, seconds.read, seconds.cut, seconds.solve,
+      seconds.render, seconds.write, solution.lattice.nx, solution.lattice.ny, report.work_units);
   std::fprintf(stderr, "estimated error %.2f px RMS (solver %.3f px)", report.discretisation_rms_px,
                report.algebraic_rms_px);
-  const auto worst = std::ranges::max_element(report.curves, {}, &multigrid::CurveReport::gap_max_px);
+  const auto worst =
+      std::ranges::max_element(report.curves, {}, &multigrid::CurveReport::gap_max_px);
   if (worst != report.curves.end()) {
     std::fprintf(stderr, "; largest gap %.2f px, curve '%s' at (%.0f, %.0f)", worst->gap_max_px,
                  worst->name.c_str(), worst->worst_px.x, worst->worst_px.y);
@@ -68,11 +69,16 @@ void Progress::summarise(const multigrid::Solution& solution, const Seconds& sec
 
 const char* in_words(multigrid::Status status) {
   switch (status) {
-    case multigrid::Status::converged: return "converged";
-    case multigrid::Status::stalled: return "stalled: no further decrease was possible";
-    case multigrid::Status::infeasible: return "infeasible: the hard curves contradict one another";
-    case multigrid::Status::limit: return "the limit of steps came before the tolerance was reached";
-    case multigrid::Status::not_finite: return "a number that is not finite appeared";
+    case multigrid::Status::converged:
+      return "converged";
+    case multigrid::Status::stalled:
+      return "stalled: no further decrease was possible";
+    case multigrid::Status::infeasible:
+      return "infeasible: the hard curves contradict one another";
+    case multigrid::Status::limit:
+      return "the limit of steps came before the tolerance was reached";
+    case multigrid::Status::not_finite:
+      return "a number that is not finite appeared";
   }
   return "unknown";
 }

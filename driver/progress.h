@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a run says on the terminal: one line that follows the work, and a summary. Both only where standard
-// error is a terminal and not with --quiet; warnings always.
-#include <chrono>
+// What a run says on the terminal: one line that follows the work, and a summary. Both only where
+// standard error is a terminal and not with --quiet; warnings always.
 #include <drumhead/multigrid/warp.h>
+#include <chrono>
 #include <string>
 
 #include "report.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The report of a run as JSON. Keys are fixed: some may be added, none renamed. Numbers that are not finite
-// are written as null (an exact Hessian's theta is one).
+// The report of a run as JSON. Keys are fixed: some may be added, none renamed. Numbers that are
+// not finite are written as null (an exact Hessian's theta is one).
 #include <drumhead/multigrid/warp.h>
 #include <filesystem>
 #include <string>

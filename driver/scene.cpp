@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene.h"
 
-#include <stdexcept>
 #include <toml++/toml.h>
+#include <stdexcept>
 
 namespace drumhead::driver {
 namespace {
@@ -21,9 +21,11 @@ std::string place_of(const fs::path& file, const toml::node& node) {
 std::string quoted(std::string_view key, const toml::node& node) {
   std::ostringstream text;
   text << key;
-  if (node.is_value()) node.visit([&](const auto& n) {
-    if constexpr (toml::is_value<decltype(n)>) text << " = " << toml::node_view<const toml::node>(n);
-  });
+  if (node.is_value())
+    node.visit([&](const auto& n) {
+      if constexpr (toml::is_value<decltype(n)>)
+        text << " = " << toml::node_view<const toml::node>(n);
+    });
   return text.str();
 }
 
@@ -105,14 +107,17 @@ void read_scene(const fs::path& file, Options& options) {
     scene = toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
     const auto line = error.source().begin.line;
-    fail(file.string() + (line ? ":" + std::to_string(line) : ""), std::string(error.description()));
+    fail(file.string() + (line ? ":" + std::to_string(line) : ""),
+         std::string(error.description()));
   }
   if (const auto* cell_size = scene.get("cell_size"); cell_size && scene.contains("cells")) {
     fail(place_of(file, *cell_size), "cell_size: give either cells or cell_size");
   }
   for (const auto& [name, node] : scene) {
-    if (name == "curve") read_curves(file, node, options);
-    else read_key(file, name.str(), node, options);
+    if (name == "curve")
+      read_curves(file, node, options);
+    else
+      read_key(file, name.str(), node, options);
   }
 }
 

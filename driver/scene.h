@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The scene file: TOML whose keys are the flags of the command (see options.h), and one [[curve]] table for
-// each curve that has a weight or a turn of its own:
+// The scene file: TOML whose keys are the flags of the command (see options.h), and one [[curve]]
+// table for each curve that has a weight or a turn of its own:
 //
 //     picture = "face.jpg"
 //     curves = "face.svg"
@@ -16,8 +16,8 @@
 namespace drumhead::driver {
 
 /// Sets what the scene says; paths are taken relative to its folder.
-/// Throws std::invalid_argument naming file and line: unreadable or broken TOML, an unknown key, a value
-/// outside its bound, `cells` beside `cell_size`, a curve table without name or named twice.
+/// Throws std::invalid_argument naming file and line: unreadable or broken TOML, an unknown key, a
+/// value outside its bound, `cells` beside `cell_size`, a curve table without name or named twice.
 void read_scene(const std::filesystem::path& file, Options& options);
 
 }  // namespace drumhead::driver

@@ -31,7 +31,8 @@ Role layer_role(pugi::xml_node group) {
 Role take_suffix(std::string& name) {
   for (const Role role : {Role::source, Role::target}) {
     const std::string_view word = kRoleNames[std::size_t(role)];
-    if (name.ends_with(word) && name.size() > word.size() && name[name.size() - word.size() - 1] == '-') {
+    if (name.ends_with(word) && name.size() > word.size() &&
+        name[name.size() - word.size() - 1] == '-') {
       name.resize(name.size() - word.size() - 1);
       return role;
     }
@@ -49,8 +50,9 @@ struct Drawn {
   Geom::PathVector paths;
 };
 
-/// Calls visit(element, role of the enclosing layer, user units → those of the root) for whatever is not a
-/// group. Definitions, clips, masks and the like are not part of the drawing and are left out.
+/// Calls visit(element, role of the enclosing layer, user units → those of the root) for whatever
+/// is not a group. Definitions, clips, masks and the like are not part of the drawing and are left
+/// out.
 using Visit = std::function<void(pugi::xml_node, Role, const Geom::Affine&)>;
 
 void walk(const SvgDocument& document, pugi::xml_node parent, Role role,
@@ -96,9 +98,10 @@ class CurveReader {
            visit(element, layer, to_picture);
          });
     if (drawn_.empty()) {
-      throw std::invalid_argument(document_.file().string() +
-                                  ": no curves: no layer source, target or pin holds a path, and no "
-                                  "path's name ends in -source or -target");
+      throw std::invalid_argument(
+          document_.file().string() +
+          ": no curves: no layer source, target or pin holds a path, and no "
+          "path's name ends in -source or -target");
     }
     refuse_doubled();
     for (const Drawn& one : drawn_) pair(one);
@@ -121,8 +124,9 @@ class CurveReader {
     if (kind(element) == "use") {
       shape = used_shape(element);
       affine = transform_of(shape).value_or(Geom::identity()) *
-               Geom::Translate(svg_length(element.attribute("x").as_string("0"), view_.width).value_or(0),
-                               svg_length(element.attribute("y").as_string("0"), view_.height).value_or(0)) *
+               Geom::Translate(
+                   svg_length(element.attribute("x").as_string("0"), view_.width).value_or(0),
+                   svg_length(element.attribute("y").as_string("0"), view_.height).value_or(0)) *
                affine;
     } else if (!is_shape(element)) {
       return;
@@ -154,9 +158,8 @@ class CurveReader {
     if (paths.empty()) document_.fail(element, "has no length");
     for (const Geom::Path& path : paths) {
       const auto bounds = path.boundsFast();
-      if (!bounds || !std::isfinite(bounds->diameter()) || bounds->diameter() <= 0) {
-        document_.fail(element, "has no length");
-      }
+      if (!bounds || bounds->diameter() <= 0) document_.fail(element, "has no length");
+      if (!std::isfinite(bounds->diameter())) document_.fail(element, "has a point at infinity");
     }
     drawn_.push_back({std::move(name), role, element, std::move(paths)});
   }
@@ -259,8 +262,10 @@ class CurveReader {
 void add_curve_elements(pugi::xml_node parent, std::vector<pugi::xml_node>& elements) {
   for (const pugi::xml_node element : parent.children()) {
     if (is_group(kind(element))) {
-      if (layer_role(element) == Role::none) add_curve_elements(element, elements);
-      else elements.push_back(element);
+      if (layer_role(element) == Role::none)
+        add_curve_elements(element, elements);
+      else
+        elements.push_back(element);
     } else if (std::string name = name_of(element);
                (is_shape(element) || kind(element) == "use") && take_suffix(name) != Role::none) {
       elements.push_back(element);

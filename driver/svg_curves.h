@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curve pairs from an SVG drawing. Layers or groups named `source` and `target` (case as written) hold
-// shapes paired by name; outside them a shape whose name ends in -source or -target belongs to the pair of
-// the rest of its name; what lies in a layer `pin` is held still. Everything else is art and not read.
-// A shape's subpaths are pairs of their own, in their order.
+// Curve pairs from an SVG drawing. Layers or groups named `source` and `target` (case as written)
+// hold shapes paired by name; outside them a shape whose name ends in -source or -target belongs to
+// the pair of the rest of its name; what lies in a layer `pin` is held still. Everything else is
+// art and not read. A shape's subpaths are pairs of their own, in their order.
 #include <drumhead/grid/curve.h>
 #include <string>
 #include <vector>
@@ -23,15 +23,14 @@ struct SvgCurves {
   std::vector<std::string> warnings;  ///< one line each
 };
 
-/// Reads the curves, the drawing's view stretched onto a picture of width × height pixels. The subpaths of a
-/// shape `a` with several are named a#1, a#2, …
-/// Throws std::invalid_argument naming file, line and element: broken geometry, nameless, unpaired or
-/// doubled paths, subpaths that do not match, curves without length, a closed source with an open target,
-/// no curves at all.
+/// Reads the curves, the drawing's view stretched onto a picture of width × height pixels. The
+/// subpaths of a shape `a` with several are named a#1, a#2, … Throws std::invalid_argument naming
+/// file, line and element: broken geometry, nameless, unpaired or doubled paths, subpaths that do
+/// not match, curves without length, a closed source with an open target, no curves at all.
 SvgCurves read_curves(const SvgDocument& document, double width_px, double height_px);
 
-/// The elements that hold curves: layers, and shapes outside layers named with a suffix; hidden where the
-/// same drawing is rasterised.
+/// The elements that hold curves: layers, and shapes outside layers named with a suffix; hidden
+/// where the same drawing is rasterised.
 std::vector<pugi::xml_node> curve_elements(const SvgDocument& document);
 
 }  // namespace drumhead::driver

@@ -88,7 +88,8 @@ std::optional<Geom::Affine> parse_transform(std::string_view text) {
     const auto open = text.find('('), close = text.find(')');
     if (close == std::string_view::npos || open > close) return std::nullopt;
     const auto numbers = arguments(text.substr(open + 1, close - open - 1));
-    const auto one = numbers ? one_transform(trimmed(text.substr(0, open)), *numbers) : std::nullopt;
+    const auto one =
+        numbers ? one_transform(trimmed(text.substr(0, open)), *numbers) : std::nullopt;
     if (!one) return std::nullopt;
     all = *one * all;  // 2geom multiplies row vectors: the last transform written acts first
     text.remove_prefix(close + 1);
@@ -120,8 +121,8 @@ SvgDocument::SvgDocument(std::filesystem::path file) : file_(std::move(file)) {
     throw std::invalid_argument(file_.string() + ": cannot be read");
   }
   text_ = text.str();
-  const auto result = xml_.load_buffer(text_.data(), text_.size(),
-                                       pugi::parse_full | pugi::parse_ws_pcdata);
+  const auto result =
+      xml_.load_buffer(text_.data(), text_.size(), pugi::parse_full | pugi::parse_ws_pcdata);
   if (!result) {
     throw std::invalid_argument(at_line(result.offset) + ": " + result.description());
   }
@@ -133,15 +134,16 @@ std::optional<SvgView> SvgDocument::view() const {
   if (const auto box = root_.attribute("viewBox")) {
     const auto numbers = svg_numbers(box.value());
     if (!numbers || numbers->size() != 4 || (*numbers)[2] <= 0 || (*numbers)[3] <= 0) {
-      fail(root_, std::string("viewBox '") + box.value() +
-                      "' must be four numbers, the last two above 0");
+      fail(root_,
+           std::string("viewBox '") + box.value() + "' must be four numbers, the last two above 0");
     }
     return SvgView{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
   }
   SvgView view;
   for (const auto& [name, size] : {std::pair{"width", &view.width}, {"height", &view.height}}) {
     const std::string_view text = root_.attribute(name).value();
-    if (trimmed(text).empty() || trimmed(text).ends_with('%') || text == "auto") return std::nullopt;
+    if (trimmed(text).empty() || trimmed(text).ends_with('%') || text == "auto")
+      return std::nullopt;
     const auto length = svg_length(text, 0.0);
     if (!length || *length <= 0) {
       fail(root_, std::string(name) + " '" + std::string(text) + "' must be a length above 0");
@@ -196,8 +198,13 @@ std::string name_of(pugi::xml_node element) {
 
 std::optional<double> svg_length(std::string_view text, double whole) {
   using Unit = std::pair<std::string_view, double>;
-  constexpr std::array<Unit, 8> kUnits{{{"", 1.0}, {"px", 1.0}, {"in", 96.0}, {"cm", 96.0 / 2.54},
-                                        {"mm", 96.0 / 25.4}, {"pt", 96.0 / 72.0}, {"pc", 16.0},
+  constexpr std::array<Unit, 8> kUnits{{{"", 1.0},
+                                        {"px", 1.0},
+                                        {"in", 96.0},
+                                        {"cm", 96.0 / 2.54},
+                                        {"mm", 96.0 / 25.4},
+                                        {"pt", 96.0 / 72.0},
+                                        {"pc", 16.0},
                                         {"Q", 24.0 / 25.4}}};
   text = trimmed(text);
   const auto x = take_number(text);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An SVG file as drawing programs save it: elements, their names and places for errors, lengths with units,
-// transforms, and the view box that is stretched onto the picture.
+// An SVG file as drawing programs save it: elements, their names and places for errors, lengths
+// with units, transforms, and the view box that is stretched onto the picture.
 #include <2geom/affine.h>
 #include <filesystem>
 #include <optional>
@@ -25,8 +25,9 @@ class SvgDocument {
   const std::filesystem::path& file() const { return file_; }
   pugi::xml_node root() const { return root_; }
 
-  /// viewBox, else width and height where both are lengths; nothing where the drawing has no size of its
-  /// own, so that its user units are picture pixels. Throws where they are broken or not above 0.
+  /// viewBox, else width and height where both are lengths; nothing where the drawing has no size
+  /// of its own, so that its user units are picture pixels. Throws where they are broken or not
+  /// above 0.
   std::optional<SvgView> view() const;
 
   /// Throws std::invalid_argument "file:line: path 'name': what".
@@ -56,18 +57,20 @@ class SvgDocument {
 /// "path" for <path> and <svg:path>; empty for what is no element.
 std::string_view kind(pugi::xml_node element);
 
-/// inkscape:label, else data-name (Illustrator's name where it had to change the id), else id; trimmed.
+/// inkscape:label, else data-name (Illustrator's name where it had to change the id), else id;
+/// trimmed.
 std::string name_of(pugi::xml_node element);
 
 /// A number or a length of SVG in user units: px, mm, cm, in, pt, pc, Q at 96 to the inch, or % of
 /// `whole`. Nothing if it is none of these.
 std::optional<double> svg_length(std::string_view text, double whole);
 
-/// Numbers separated by white space and at most one comma each; nothing if anything else is among them.
+/// Numbers separated by white space and at most one comma each; nothing if anything else is among
+/// them.
 std::optional<std::vector<double>> svg_numbers(std::string_view text);
 
-/// The `transform` of style or attribute as SVG and CSS write it; identity if there is none; nothing if it
-/// cannot be read.
+/// The `transform` of style or attribute as SVG and CSS write it; identity if there is none;
+/// nothing if it cannot be read.
 std::optional<Geom::Affine> transform_of(pugi::xml_node element);
 
 }  // namespace drumhead::driver

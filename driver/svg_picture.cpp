@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "svg_picture.h"
 
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fcntl.h>
 #include <fstream>
-#include <spawn.h>
 #include <stdexcept>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "atomic_file.h"
 #include "svg_curves.h"
@@ -40,7 +40,8 @@ Size size_of(const SvgDocument& document, const SvgView& view) {
     throw std::invalid_argument(document.file().string() + ": its longer side must be at most " +
                                 std::to_string(kGreatestSide) + " pixels");
   }
-  return {std::max(1, int(std::lround(width * scale))), std::max(1, int(std::lround(height * scale)))};
+  return {std::max(1, int(std::lround(width * scale))),
+          std::max(1, int(std::lround(height * scale)))};
 }
 
 /// Inline style is the strongest but for !important, which stylesheets of drawings do not use.
@@ -61,7 +62,8 @@ bool links_to_files(pugi::xml_node root) {
     for (const char* name : {"href", "xlink:href"}) {
       const std::string_view href = node.attribute(name).value();
       const bool picture = kind(node) == "image" || kind(node) == "feImage" || kind(node) == "use";
-      if (picture && !href.empty() && !href.starts_with('#') && !href.starts_with("data:")) return true;
+      if (picture && !href.empty() && !href.starts_with('#') && !href.starts_with("data:"))
+        return true;
     }
     return false;
   }));
@@ -74,7 +76,8 @@ std::string first_line(const fs::path& file) {
   return line;
 }
 
-/// Runs a program with its output going to `log`. Throws std::runtime_error if it cannot be started.
+/// Runs a program with its output going to `log`. Throws std::runtime_error if it cannot be
+/// started.
 int run(std::vector<std::string> words, const fs::path& log) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -85,14 +88,18 @@ int run(std::vector<std::string> words, const fs::path& log) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_TRUNC, 0);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   pid_t child = 0;
-  const int error = posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error =
+      posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error) {
-    throw std::runtime_error(words[0] + " (Debian package librsvg2-bin), which rasterises SVG "
-                             "pictures, cannot be run: " + std::strerror(error));
+    throw std::runtime_error(words[0] +
+                             " (Debian package librsvg2-bin), which rasterises SVG "
+                             "pictures, cannot be run: " +
+                             std::strerror(error));
   }
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -102,13 +109,15 @@ Image rasterise(const fs::path& file) {
   SvgDocument document(file);
   const auto view = document.view();
   if (!view) {
-    throw std::invalid_argument(file.string() + ": a drawing that is rasterised needs a viewBox, or "
-                                                "width and height");
+    throw std::invalid_argument(file.string() +
+                                ": a drawing that is rasterised needs a viewBox, or "
+                                "width and height");
   }
   const Size size = size_of(document, *view);
   for (const pugi::xml_node element : curve_elements(document)) hide(element);
   char box[160];
-  std::snprintf(box, sizeof box, "%.17g %.17g %.17g %.17g", view->x, view->y, view->width, view->height);
+  std::snprintf(box, sizeof box, "%.17g %.17g %.17g %.17g", view->x, view->y, view->width,
+                view->height);
   const std::string width = std::to_string(size.width), height = std::to_string(size.height);
   set(document.root(), "viewBox", box);
   set(document.root(), "width", width);
@@ -120,10 +129,10 @@ Image rasterise(const fs::path& file) {
   const AtomicFile copy((beside ? file.parent_path() : scratch) / "drumhead-drawing.svg");
   const AtomicFile raster(scratch / "drumhead-raster.png"), log(scratch / "drumhead-rsvg.log");
   document.save(copy.temporary());
-  const int status = run({"rsvg-convert", "--unlimited", "--format", "png", "--width", width,
-                          "--height", height, "--output", raster.temporary().string(),
-                          copy.temporary().string()},
-                         log.temporary());
+  const int status =
+      run({"rsvg-convert", "--unlimited", "--format", "png", "--width", width, "--height", height,
+           "--output", raster.temporary().string(), copy.temporary().string()},
+          log.temporary());
   if (status != 0) {
     throw std::invalid_argument(file.string() + ": rsvg-convert: " + first_line(log.temporary()));
   }

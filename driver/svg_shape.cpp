@@ -15,7 +15,8 @@
 namespace drumhead::driver {
 namespace {
 
-/// Rounded coordinates leave closing segments and stubs of this share of a subpath's size, which nobody drew.
+/// Rounded coordinates leave closing segments and stubs of this share of a subpath's size, which
+/// nobody drew.
 constexpr double kNoLength = 1e-4;
 
 class ShapeReader {
@@ -25,12 +26,18 @@ class ShapeReader {
 
   Geom::PathVector read() {
     const std::string_view shape = kind(element_);
-    if (shape == "path") read_path();
-    else if (shape == "rect") read_rect();
-    else if (shape == "circle") add_ellipse(size("r", diagonal()), size("r", diagonal()));
-    else if (shape == "ellipse") read_ellipse();
-    else if (shape == "line") read_line();
-    else read_points(shape == "polygon");
+    if (shape == "path")
+      read_path();
+    else if (shape == "rect")
+      read_rect();
+    else if (shape == "circle")
+      add_ellipse(size("r", diagonal()), size("r", diagonal()));
+    else if (shape == "ellipse")
+      read_ellipse();
+    else if (shape == "line")
+      read_line();
+    else
+      read_points(shape == "polygon");
     builder_.flush();
     Geom::PathVector paths;
     for (const Geom::Path& path : builder_.peek()) {
@@ -73,7 +80,8 @@ class ShapeReader {
     try {
       Geom::SVGPathParser(builder_).parse(data.data(), int(data.size()));
     } catch (const std::exception&) {
-      // 2geom does not say where. Its block-wise feed, which could, loses digits at the ends of blocks.
+      // 2geom does not say where. Its block-wise feed, which could, loses digits at the ends of
+      // blocks.
       const auto strange = data.find_first_not_of("MmZzLlHhVvCcSsQqTtAaEe0123456789+-., \t\r\n\f");
       if (strange != data.npos) {
         fail("broken path data at '" + std::string(data.substr(strange, 16)) + "'");
@@ -131,8 +139,10 @@ class ShapeReader {
     if (!points || points->size() % 2) fail("points must be pairs of numbers");
     for (std::size_t i = 0; i < points->size(); i += 2) {
       const Geom::Point p((*points)[i], (*points)[i + 1]);
-      if (i == 0) builder_.moveTo(p);
-      else builder_.lineTo(p);
+      if (i == 0)
+        builder_.moveTo(p);
+      else
+        builder_.lineTo(p);
     }
     if (closed && !points->empty()) builder_.closePath();
   }
@@ -149,8 +159,8 @@ grid::Point point(const Geom::Point& p) { return {p[Geom::X], p[Geom::Y]}; }
 
 double extent(const Geom::Curve& segment) { return segment.boundsFast().diameter(); }
 
-/// The segments that have a length. A closing line that only bridges rounded coordinates is taken into the
-/// last segment, so that it does not count as one.
+/// The segments that have a length. A closing line that only bridges rounded coordinates is taken
+/// into the last segment, so that it does not count as one.
 Segments segments_of(const Geom::Path& path) {
   Segments segments;
   const auto bounds = path.boundsFast();
@@ -176,8 +186,8 @@ int pieces_of(const Geom::Curve& segment) {
   return arc ? std::max(1, int(std::ceil(arc->angularExtent() * 4 / std::numbers::pi - 1e-6))) : 1;
 }
 
-/// The piece [t0, t1] of an arc, of equal angle for equal t: control points at 4/3 tan(angle/4) along the
-/// tangents of the unit circle, mapped to the ellipse.
+/// The piece [t0, t1] of an arc, of equal angle for equal t: control points at 4/3 tan(angle/4)
+/// along the tangents of the unit circle, mapped to the ellipse.
 grid::CubicBezier arc_piece(const Geom::EllipticalArc& arc, double t0, double t1) {
   const double start = arc.initialAngle().radians();
   const double from = start + t0 * arc.sweepAngle(), to = start + t1 * arc.sweepAngle();
@@ -206,8 +216,10 @@ void append(const Geom::Curve& segment, int pieces, Chain& chain) {
   const auto* arc = as_arc(segment);
   for (int k = 0; k < pieces; ++k) {
     const double t0 = double(k) / pieces, t1 = double(k + 1) / pieces;
-    if (arc) chain.push_back(arc_piece(*arc, t0, t1));
-    else chain.push_back(pieces == 1 ? as_cubic(segment) : as_cubic(segment).piece(t0, t1));
+    if (arc)
+      chain.push_back(arc_piece(*arc, t0, t1));
+    else
+      chain.push_back(pieces == 1 ? as_cubic(segment) : as_cubic(segment).piece(t0, t1));
   }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "warp_command.h"
 
+#include <drumhead/multigrid/warp.h>
 #include <algorithm>
 #include <chrono>
-#include <drumhead/multigrid/warp.h>
 #include <map>
 #include <stdexcept>
 
@@ -35,8 +35,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-bool is_svg(const fs::path& file) { return file.extension() == ".svg"; }
-
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   return fs::weakly_canonical(fs::absolute(a), error) ==
@@ -55,7 +53,8 @@ std::vector<fs::path> outputs_of(const Options& options) {
 
 void check_files(Options& options) {
   if (options.picture.empty()) throw std::invalid_argument("the scene names no picture");
-  if (options.curves.empty() && is_svg(options.picture)) options.curves = options.picture;
+  if (options.curves.empty() && has_extension(options.picture, ".svg"))
+    options.curves = options.picture;
   if (options.curves.empty()) {
     throw std::invalid_argument(options.picture.string() + ": no CURVES.svg was given for it");
   }
@@ -64,12 +63,13 @@ void check_files(Options& options) {
     throw std::invalid_argument("no output: give -o OUT, --overlay, --lattice or --report");
   }
   for (auto file = outputs.begin(); file != outputs.end(); ++file) {
-    for (const fs::path& input : {options.picture, options.curves}) {
-      if (same_file(*file, input)) {
+    for (const fs::path& input : {options.picture, options.curves, options.scene}) {
+      if (!input.empty() && same_file(*file, input)) {
         throw std::invalid_argument(file->string() + ": an output must not replace an input");
       }
     }
-    if (std::any_of(outputs.begin(), file, [&](const fs::path& f) { return same_file(f, *file); })) {
+    if (std::any_of(outputs.begin(), file,
+                    [&](const fs::path& f) { return same_file(f, *file); })) {
       throw std::invalid_argument(file->string() + ": two outputs must not be the same file");
     }
   }
@@ -114,8 +114,8 @@ int run_warp(Options options) {
   Outputs outputs(options);
 
   progress.show("reading " + options.picture.string());
-  const Image picture =
-      is_svg(options.picture) ? rasterise(options.picture) : read_image(options.picture);
+  const Image picture = has_extension(options.picture, ".svg") ? rasterise(options.picture)
+                                                               : read_image(options.picture);
   const SvgCurves drawing =
       read_curves(SvgDocument(options.curves), picture.width(), picture.height());
   for (const std::string& warning : drawing.warnings) progress.warn(warning);
@@ -141,10 +141,10 @@ int run_warp(Options options) {
   seconds.render = watch.lap();
 
   progress.show("writing");
-  if (!options.output.empty()) write_image(warped, outputs[options.output]);
   if (!options.overlay.empty()) {
     write_overlay(warped, solution, drawing.curves, outputs[options.overlay]);
   }
+  if (!options.output.empty()) write_image(std::move(warped), outputs[options.output]);
   if (!options.lattice_file.empty()) write_lattice(solution, outputs[options.lattice_file]);
   seconds.write = watch.lap();
   seconds.total = whole.lap();

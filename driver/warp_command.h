@@ -5,8 +5,9 @@
 
 namespace drumhead::driver {
 
-/// Returns the exit code 0 or 1. Throws std::invalid_argument for bad input, before anything is written, and
-/// std::runtime_error where writing fails, in which case no output has appeared that is not whole.
+/// Returns the exit code 0 or 1. Throws std::invalid_argument for bad input, before anything is
+/// written, and std::runtime_error where writing fails, in which case no output has appeared that
+/// is not whole.
 int run_warp(Options options);
 
 }  // namespace drumhead::driver

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The executable on bad input: exit code 2, one line that names file, place and bound, no file left behind.
+// The executable on bad input: exit code 2, one line that names file, place and bound, no file left
+// behind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +18,10 @@ class DriverCommand : public testing::Test {
   DriverCommand() {
     Image image{OIIO::ImageSpec(40, 40, 3, OIIO::TypeDesc::UINT8), std::vector<float>(4800, 0.5f)};
     write_image(image, scratch / "photo.png");
-    scratch.write("curves.svg", drawing(40, 40, "<g id='source'><path id='a' d='M10 10 L30 10'/></g>"
-                                                "<g id='target'><path id='a-target' d='M10 12 L30 12'/></g>"));
+    scratch.write("curves.svg",
+                  drawing(40, 40,
+                          "<g id='source'><path id='a' d='M10 10 L30 10'/></g>"
+                          "<g id='target'><path id='a-target' d='M10 12 L30 12'/></g>"));
   }
 
   /// Runs and demands exit code 2, one line with all of `parts`, and no new file.
@@ -80,9 +83,10 @@ TEST_F(DriverCommand, RefusesAnUnwritableOutputBeforeItWorks) {
 
 TEST_F(DriverCommand, RefusesACurveOutsideTheLattice) {
   scratch.write("bad.svg", drawing(40, 40, "<g id='pin'><path id='far' d='M1 1 L50 9'/></g>"));
-  expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png", "--cells", "10", "--margin", "0"},
-                 {"bad.svg:2: path 'far': leaves the lattice at (50.0, 9.0) px",
-                  "x 0.0 to 40.0 and y 0.0 to 40.0 px"});
+  expect_refused(
+      {"warp", "photo.png", "bad.svg", "-o", "out.png", "--cells", "10", "--margin", "0"},
+      {"bad.svg:2: path 'far': leaves the lattice at (50.0, 9.0) px",
+       "x 0.0 to 40.0 and y 0.0 to 40.0 px"});
 }
 
 TEST_F(DriverCommand, RefusesOutputsThatWouldReplaceOneAnotherOrAnInput) {
@@ -90,6 +94,9 @@ TEST_F(DriverCommand, RefusesOutputsThatWouldReplaceOneAnotherOrAnInput) {
                  {"./photo.png: an output must not replace an input"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--overlay", "./out.png"},
                  {"out.png: two outputs must not be the same file"});
+  scratch.write("scene.toml", "picture = \"photo.png\"\ncurves = \"curves.svg\"\n");
+  expect_refused({"warp", "scene.toml", "--report", "scene.toml"},
+                 {"scene.toml: an output must not replace an input"});
 }
 
 TEST_F(DriverCommand, RefusesUnknownWordsAndMissingOnes) {
@@ -99,8 +106,10 @@ TEST_F(DriverCommand, RefusesUnknownWordsAndMissingOnes) {
   expect_refused({"warp", "photo.png", "curves.svg"}, {"no output"});
   expect_refused({"warp", "photo.png", "curves.svg", "--frobnicate"}, {"--frobnicate"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o"}, {"--output"});
-  expect_refused({"warp", "photo.png", "curves.svg", "more.svg", "-o", "out.png"}, {"'more.svg': too many"});
-  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.nothing"}, {"out.nothing: no picture format"});
+  expect_refused({"warp", "photo.png", "curves.svg", "more.svg", "-o", "out.png"},
+                 {"'more.svg': too many"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.nothing"},
+                 {"out.nothing: no picture format"});
 }
 
 TEST_F(DriverCommand, LeavesAnOldOutputAloneWhenItRefuses) {

@@ -123,13 +123,18 @@ TEST(DriverImage, ADeepPictureFitsIntoAShallowFormat) {
 TEST(DriverImage, UnreadablePicturesAreNamed) {
   const Scratch scratch;
   scratch.write("text.png", "this is no picture");
-  EXPECT_NE(message_of([&] { read_image(scratch / "none.png"); }).find("none.png: cannot be read: no such file"),
+  EXPECT_NE(message_of([&] {
+              read_image(scratch / "none.png");
+            }).find("none.png: cannot be read: no such file"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_image(scratch / "text.png"); }).find("text.png: cannot be read: "),
+  EXPECT_NE(
+      message_of([&] { read_image(scratch / "text.png"); }).find("text.png: cannot be read: "),
+      std::string::npos);
+  EXPECT_NE(message_of([&] { read_image(scratch.folder()); }).find("not a regular file"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_image(scratch.folder()); }).find("not a regular file"), std::string::npos);
-  EXPECT_NE(message_of([&] { check_writable_format("a.nothing"); }).find("a.nothing: no picture format"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of([&] { check_writable_format("a.nothing"); }).find("a.nothing: no picture format"),
+      std::string::npos);
 }
 
 TEST(DriverImage, ADrawingIsRasterisedWithItsCurvesHidden) {
@@ -156,7 +161,8 @@ TEST(DriverImage, ADrawingIsRasterisedWithItsCurvesHidden) {
 
 TEST(DriverImage, ASmallDrawingIsEnlarged) {
   const Scratch scratch;
-  const Image image = rasterise(scratch.write("a.svg", drawing(30, 10, "<rect width='5' height='5'/>")));
+  const Image image =
+      rasterise(scratch.write("a.svg", drawing(30, 10, "<rect width='5' height='5'/>")));
   EXPECT_EQ(image.width(), 1024);
   EXPECT_EQ(image.height(), 341);
 }

@@ -99,7 +99,8 @@ struct Wrong {
 TEST(DriverScene, ErrorsNameFileLineAndBound) {
   for (const auto& [text, error] : std::vector<Wrong>{
            {"cells = 0", "scene.toml:1: cells = 0: must be a whole number from 1 to 16384"},
-           {"\ncells = 16385", "scene.toml:2: cells = 16385: must be a whole number from 1 to 16384"},
+           {"\ncells = 16385",
+            "scene.toml:2: cells = 16385: must be a whole number from 1 to 16384"},
            {"cells = 1.5", "cells = 1.5: must be a whole number"},
            {"cells = \"12\"", "cells = '12': must be a whole number"},
            {"\n\nkappa = nan", "scene.toml:3: kappa = nan: must be a number, 0 or above, or inf"},
@@ -127,7 +128,8 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"[[curve]]\nname = \"a\"\nweight = nan", "scene.toml:3: weight = nan: must be"},
            {"[[curve]]\nname = \"a\"\nturn = inf", "scene.toml:3: turn = inf: must be"},
            {"[[curve]]\nname = \"a\"\nwight = 1", "scene.toml:3: wight = 1: unknown key"},
-           {"[[curve]]\nname = \"a\"\n[[curve]]\nname = \"a\"", "curve 'a' was already given at"}}) {
+           {"[[curve]]\nname = \"a\"\n[[curve]]\nname = \"a\"",
+            "curve 'a' was already given at"}}) {
     const std::string message = error_of(text);
     EXPECT_NE(message.find(error), std::string::npos) << text << "\n  " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -164,16 +166,29 @@ TEST(DriverScene, FlagsTakeTheNamedValues) {
 }
 
 TEST(DriverScene, WrongFlagsNameTheFlag) {
-  for (const auto& [flag, value] : std::vector<std::pair<std::string, std::string>>{
-           {"--cells", "0"}, {"--cells", "2.0"}, {"--cells", "many"}, {"--cells", ""},
-           {"--margin", "-1"}, {"--kappa", "nan"}, {"--mu", "inf"}, {"--mu", "1e999"},
-           {"--weight", "-inf"}, {"--tolerance", "0"}, {"--threads", "-2"}, {"--model", "arap"},
-           {"--lattice", "a.png"}}) {
-    const std::string message = message_of([&] { from_command_line({"a.png", "b.svg", flag, value}); });
+  for (const auto& given :
+       std::vector<std::pair<std::string, std::string>>{{"--cells", "0"},
+                                                        {"--cells", "2.0"},
+                                                        {"--cells", "many"},
+                                                        {"--cells", ""},
+                                                        {"--margin", "-1"},
+                                                        {"--kappa", "nan"},
+                                                        {"--mu", "inf"},
+                                                        {"--mu", "1e999"},
+                                                        {"--weight", "-inf"},
+                                                        {"--tolerance", "0"},
+                                                        {"--threads", "-2"},
+                                                        {"--model", "arap"},
+                                                        {"--lattice", "a.png"}}) {
+    const std::string flag = given.first, value = given.second;
+    const std::string message = message_of([&] {
+      from_command_line({"a.png", "b.svg", flag, value});
+    });
     EXPECT_NE(message.find(flag + " " + value + ": must be "), std::string::npos) << message;
   }
-  EXPECT_NE(message_of([] { from_command_line({"a.png", "--cells", "2", "--cell-size", "2"}); })
-                .find("give either --cells or --cell-size"),
+  EXPECT_NE(message_of([] {
+              from_command_line({"a.png", "--cells", "2", "--cell-size", "2"});
+            }).find("give either --cells or --cell-size"),
             std::string::npos);
 }
 
@@ -190,16 +205,17 @@ TEST(DriverScene, WeightsAndTurnsReachTheirCurves) {
   Options options;
   options.weight = 10;
   options.overrides = {{"b", 3.0, {}, "s.toml:1"}, {"c", {}, 90.0, "s.toml:4"}};
-  const auto pairs = apply_settings(
-      options, {segment("a", {}, {1, 1}), segment("b#1", {}, {1, 1}), segment("b#2", {}, {1, 1}),
-                segment("c", {}, {1, 1}, true)});
+  const auto pairs =
+      apply_settings(options, {segment("a", {}, {1, 1}), segment("b#1", {}, {1, 1}),
+                               segment("b#2", {}, {1, 1}), segment("c", {}, {1, 1}, true)});
   EXPECT_EQ(pairs[0].weight, 10);
   EXPECT_EQ(pairs[1].weight, 3);
   EXPECT_EQ(pairs[2].weight, 3);
   EXPECT_TRUE(std::isinf(pairs[3].weight));
   EXPECT_EQ(pairs[3].turn_degrees, 90);
-  EXPECT_NE(message_of([&] { apply_settings(options, {segment("b", {}, {1, 1})}); })
-                .find("s.toml:4: [[curve]] 'c': "),
+  EXPECT_NE(message_of([&] {
+              apply_settings(options, {segment("b", {}, {1, 1})});
+            }).find("s.toml:4: [[curve]] 'c': "),
             std::string::npos);
 }
 
@@ -208,9 +224,10 @@ TEST(DriverScene, ASourceMustStayInTheLatticeBetweenItsEndsToo) {
   check_inside(lattice, {segment("edge", {0, 0}, {100, 50})});
   SvgCurve bulge = segment("bulge", {10, 10}, {20, 10});
   bulge.pair.source[0].control[1].y = bulge.pair.source[0].control[2].y = -10;
-  EXPECT_EQ(message_of([&] { check_inside(lattice, {bulge}); }),
-            "a.svg:7: path 'bulge': leaves the lattice at (15.0, -5.0) px; it must stay within x 0.0 "
-            "to 100.0 and y 0.0 to 50.0 px (see --margin)");
+  EXPECT_EQ(
+      message_of([&] { check_inside(lattice, {bulge}); }),
+      "a.svg:7: path 'bulge': leaves the lattice at (15.0, -5.0) px; it must stay within x 0.0 "
+      "to 100.0 and y 0.0 to 50.0 px (see --margin)");
   bulge.pair.source[0].control[1].y = bulge.pair.source[0].control[2].y = -3;
   check_inside(lattice, {bulge});
 }

@@ -15,7 +15,8 @@ namespace {
 grid::Point in_picture(double x, double y) { return {2 * (x + 10), 2 * (y - 20)}; }
 
 const SvgCurves& torture() {
-  static const SvgCurves curves = read_curves(SvgDocument(DRUMHEAD_TEST_DATA "/torture.svg"), 400, 200);
+  static const SvgCurves curves =
+      read_curves(SvgDocument(DRUMHEAD_TEST_DATA "/torture.svg"), 400, 200);
   return curves;
 }
 
@@ -42,7 +43,8 @@ void expect_at(const std::string& name, std::size_t k, double t, double x, doubl
 
 SvgCurves read(const std::string& elements, double width = 100, double height = 100) {
   const Scratch scratch;
-  return read_curves(SvgDocument(scratch.write("curves.svg", drawing(100, 100, elements))), width, height);
+  return read_curves(SvgDocument(scratch.write("curves.svg", drawing(100, 100, elements))), width,
+                     height);
 }
 
 std::string error_of(const std::string& elements) {
@@ -178,8 +180,10 @@ TEST(DriverSvg, WithoutAViewUserUnitsArePixelsAndWithOneItIsStretched) {
   const Scratch scratch;
   const std::string curve = "<g id='pin'><path d='M 1 2 L 3 4'/></g></svg>";
   const auto start = [&](const std::string& root) {
-    return read_curves(SvgDocument(scratch.write("a.svg", root + curve)), 400, 200).curves[0]
-        .pair.source[0].at(0.0);
+    return read_curves(SvgDocument(scratch.write("a.svg", root + curve)), 400, 200)
+        .curves[0]
+        .pair.source[0]
+        .at(0.0);
   };
   expect_near({1, 2}, start("<svg>"));
   expect_near({1, 2}, start("<svg width='100%' height='100%'>"));
@@ -219,23 +223,28 @@ TEST(DriverSvg, ErrorsNameFileLineAndElement) {
             ":2: path 'a': the name 'a' was used before"},
            {layers(a, target_a) + "<g id='pin'><path inkscape:label='a' d='M0 0L9 9'/></g>",
             ":3: path 'a': the name 'a' was used before"},
-           {layers("<path id='a' d='M0 0 L 9 oops'/>", target_a), ":2: path 'a': broken path data at 'oops'"},
+           {layers("<path id='a' d='M0 0 L 9 oops'/>", target_a),
+            ":2: path 'a': broken path data at 'oops'"},
            {layers("<path id='a' d='M0 0 L 9 9 8'/>", target_a),
             ":2: path 'a': broken path data 'M0 0 L 9 9 8'"},
            {layers("<path id='a' d='L 9 9'/>", target_a), ":2: path 'a': broken path data 'L 9 9'"},
            {layers("<path id='a'/>", target_a), ":2: path 'a': has no length"},
            {layers("<path id='a' d='M5 5 L5 5'/>", target_a), ":2: path 'a': has no length"},
-           {layers("<path id='a' d='M5 5 L6 6 M7 7 L8 8'/>", target_a), "has 2 subpaths and its target 1"},
+           {layers("<path id='a' d='M5 5 L6 6 M7 7 L8 8'/>", target_a),
+            "has 2 subpaths and its target 1"},
            {layers("<circle id='a' r='-1'/>", target_a), ":2: circle 'a': r must be 0 or above"},
-           {layers("<circle id='a' r='big'/>", target_a), ":2: circle 'a': r 'big' is not a length"},
-           {layers("<polygon id='a' points='1 2 3'/>", target_a), "points must be pairs of numbers"},
+           {layers("<circle id='a' r='big'/>", target_a),
+            ":2: circle 'a': r 'big' is not a length"},
+           {layers("<polygon id='a' points='1 2 3'/>", target_a),
+            "points must be pairs of numbers"},
            {layers("<path id='a' transform='turn(1)' d='M0 0L9 9'/>", target_a),
             ":2: path 'a': its transform cannot be read"},
            {layers("<use id='a' href='#nowhere'/>", target_a), "no shape of this file"},
            {layers("<svg id='a'/>", target_a), ":2: svg 'a': is not read among curves"},
            {layers(target_a, ""), "its suffix says another layer"},
            {layers("<circle id='a' r='9'/>", target_a), "'a' is open but its source is closed"},
-           {"<g id='source'><g id='target'/></g>", ":2: g 'target': this layer lies in the layer 'source'"},
+           {"<g id='source'><g id='target'/></g>",
+            ":2: g 'target': this layer lies in the layer 'source'"},
            {"<g id='a-source'>" + a + "</g>", "the suffix belongs on the name of a path"},
            {a + b, "curves.svg: no curves"},
            {"<g id='Source'>" + a + "</g>", "curves.svg: no curves"},

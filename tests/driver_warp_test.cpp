@@ -22,7 +22,8 @@ class DriverWarp : public testing::Test {
     Image image{OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::UINT8), {}};
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        image.pixels.insert(image.pixels.end(), {float(x) / 255, float(y) / 255, float(x * y % 256) / 255});
+        image.pixels.insert(image.pixels.end(),
+                            {float(x) / 255, float(y) / 255, float(x * y % 256) / 255});
       }
     }
     write_image(image, scratch / "photo.png");
@@ -35,8 +36,9 @@ class DriverWarp : public testing::Test {
   /// A square of 20 pixels around the centre, moved to the right by `shift`.
   void draw_shift(double shift) {
     const std::string square = "M38 22 h20 v20 h-20 z";
-    draw("<g id='source'><path id='a' d='" + square + "'/></g>\n<g id='target' transform='translate(" +
-         std::to_string(shift) + ")'><path id='a-target' d='" + square + "'/></g>");
+    draw("<g id='source'><path id='a' d='" + square +
+         "'/></g>\n<g id='target' transform='translate(" + std::to_string(shift) +
+         ")'><path id='a-target' d='" + square + "'/></g>");
   }
 
   Scratch scratch;
@@ -44,8 +46,8 @@ class DriverWarp : public testing::Test {
 
 TEST_F(DriverWarp, PinsAloneReturnThePicture) {
   draw("<g id='pin'><circle cx='48' cy='32' r='20'/></g>");
-  const RunResult result = run_drumhead(
-      scratch, {"warp", "photo.png", "curves.svg", "--cells", "24", "-o", "out.png", "--report", "r.json"});
+  const RunResult result = run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells",
+                                                  "24", "-o", "out.png", "--report", "r.json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(read_image(scratch / "out.png").pixels, read_image(scratch / "photo.png").pixels);
@@ -91,11 +93,12 @@ TEST_F(DriverWarp, ACurveIsCarriedToItsTarget) {
 
 TEST_F(DriverWarp, ASceneDoesWhatItsFlagsDo) {
   draw_shift(6);
-  scratch.write("scene.toml", "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 32\nkappa = 10\n"
-                              "output = \"scene.png\"\nthreads = 1\n");
+  scratch.write("scene.toml",
+                "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 32\nkappa = 10\n"
+                "output = \"scene.png\"\nthreads = 1\n");
   EXPECT_EQ(run_drumhead(scratch, {"warp", "scene.toml"}).exit_code, 0);
-  EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", "--kappa", "10",
-                                   "--threads", "2", "-o", "flags.png"})
+  EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", "--kappa",
+                                   "10", "--threads", "2", "-o", "flags.png"})
                 .exit_code,
             0);
   EXPECT_EQ(read_image(scratch / "scene.png").pixels, read_image(scratch / "flags.png").pixels);
@@ -110,22 +113,25 @@ std::set<std::string> names(const Json& object) {
 TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
   using Names = std::set<std::string>;
   draw_shift(6);
-  ASSERT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", "--report", "r.json"})
+  ASSERT_EQ(run_drumhead(scratch,
+                         {"warp", "photo.png", "curves.svg", "--cells", "32", "--report", "r.json"})
                 .exit_code,
             0);
   const std::string text = read_text(scratch / "r.json");
   const Json r = Json::parse(text);
-  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "lattice", "levels", "work_units",
-                             "work_unit_seconds", "error_px", "curves", "folds", "energy", "seconds",
-                             "memory", "isa", "threads", "notes"}));
+  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "lattice", "levels",
+                             "work_units", "work_unit_seconds", "error_px", "curves", "folds",
+                             "energy", "seconds", "memory", "isa", "threads", "notes"}));
   EXPECT_EQ(names(r["lattice"]), (Names{"nx", "ny", "cell_px", "origin_px", "levels"}));
   ASSERT_FALSE(r["levels"].empty());
   EXPECT_EQ(names(r["levels"].back()), (Names{"nx", "ny", "newton"}));
-  EXPECT_EQ(names(r["levels"].back()["newton"].at(0)),
-            (Names{"theta", "step", "krylov", "residual", "dx_rms_px", "dx_max_px", "inverted_cells"}));
+  EXPECT_EQ(
+      names(r["levels"].back()["newton"].at(0)),
+      (Names{"theta", "step", "krylov", "residual", "dx_rms_px", "dx_max_px", "inverted_cells"}));
   EXPECT_EQ(names(r["error_px"]),
             (Names{"algebraic_rms", "algebraic_max", "discretisation_rms", "discretisation_max"}));
-  EXPECT_EQ(names(r["curves"].at(0)), (Names{"name", "length_px", "gap_rms_px", "gap_max_px", "worst_px"}));
+  EXPECT_EQ(names(r["curves"].at(0)),
+            (Names{"name", "length_px", "gap_rms_px", "gap_max_px", "worst_px"}));
   EXPECT_EQ(names(r["folds"]),
             (Names{"inverted_cells", "folded_cells", "min_J", "min_corner_J", "places_px"}));
   EXPECT_EQ(names(r["energy"]), (Names{"total", "elastic", "volume", "constraint"}));
@@ -138,11 +144,12 @@ TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
 TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
   draw_shift(6);
   const auto run = [&](const std::string& flag, const std::string& value) {
-    EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", flag, value,
-                                     "-o", "out.png", "--report", "r.json"})
+    EXPECT_EQ(run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "32", flag,
+                                     value, "-o", "out.png", "--report", "r.json"})
                   .exit_code,
               0);
-    return std::pair{Json::parse(read_text(scratch / "r.json")), read_image(scratch / "out.png").pixels};
+    return std::pair{Json::parse(read_text(scratch / "r.json")),
+                     read_image(scratch / "out.png").pixels};
   };
   const auto [harmonic, warped] = run("--model", "harmonic");
   const auto [soft, same] = run("--kappa", "0");
