@@ -33,6 +33,7 @@ class Cycle {
   Hierarchy<T>& hierarchy_;
   int top_;
   bool pressure_;
+  T clamp_width_ = T(1);
   CoarseSolver<T> bottom_;
   std::vector<T> residual_;
 };

@@ -26,6 +26,8 @@ class Hierarchy {
     return l;
   }
   const SceneTraits& traits() const { return traits_; }
+  /// Exact rows from here on: no jump in the equations (the preconditioner keeps its own).
+  void drop_jump() { traits_.jump = 0.0; }
   kernels::RowScratch<T>& scratch() { return scratch_; }
 
   /// Hands the state of level `top` and its clamp down to all coarser levels.

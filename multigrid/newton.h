@@ -54,7 +54,9 @@ class Newton {
   double median_pressure() const;
   double curve_merit(double step) const;
   void prepare_curve_merit();
-  NewtonStep line_search();
+  double force_norm(bool pressure);
+  bool full_step_solves(double norm_before);
+  NewtonStep line_search(double norm_before);
   void update(double step, bool pressure);
   bool finite(const NewtonStep& step) const;
 

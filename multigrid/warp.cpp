@@ -147,7 +147,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
   const SceneTraits traits{.pressure = has_pressure(material),
-                           .jump = options.exact ? 0.0 : kJump,
+                           .jump = kJump,
                            .jump_inside = kJump};
   grid::MemoryMeter meter;
   Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
