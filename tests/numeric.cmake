@@ -15,14 +15,12 @@ foreach(name system cut)
 endforeach()
 drumhead_test(NAME oracle_energy_test SOURCES oracle_energy_test.cpp LINK drumhead_oracle LABEL numeric)
 
-if(TARGET drumhead::multigrid)
-  # multigrid for its headers: the scenes are built as problems of the solver.
-  drumhead_test(NAME oracle_grid_cut_test
-    SOURCES oracle_grid_cut_test.cpp support/scene_problem.cpp
-    LINK drumhead_oracle drumhead::grid drumhead::multigrid LABEL unit)
-  foreach(name exact default nested)
-    drumhead_test(NAME stability_${name}_test
-      SOURCES stability_${name}_test.cpp support/scene_problem.cpp
-      LINK drumhead_oracle drumhead::multigrid LABEL numeric)
-  endforeach()
-endif()
+# multigrid for its headers: the scenes are built as problems of the solver.
+drumhead_test(NAME oracle_grid_cut_test
+  SOURCES oracle_grid_cut_test.cpp support/scene_problem.cpp
+  LINK drumhead_oracle drumhead::grid drumhead::multigrid LABEL unit)
+foreach(name exact default nested)
+  drumhead_test(NAME stability_${name}_test
+    SOURCES stability_${name}_test.cpp support/scene_problem.cpp
+    LINK drumhead_oracle drumhead::multigrid LABEL numeric)
+endforeach()

@@ -32,24 +32,35 @@ double worst_gap_rms_cells(const multigrid::SolveReport& report) {
   return worst;
 }
 
+// The oracle starts from the solver's lattice, because the jump's minimum need not be unique: at S1
+// kappa 10 the oracle finds L = 2.0848 from the harmonic start and 2.0820 from the next coarser
+// lattice, where the solver's is 2.0764. It may not be higher than the first.
 TEST_P(DefaultPath, SolvesItsOwnEquations) {
   const scenes::ReferenceCase& c = GetParam();
   const oracle::OracleScene scene = oracle::make_scene(c.scene, kCells, c.kappa, kDefaultRows);
-  const oracle::OracleResult direct = oracle::newton(scene);
-  ASSERT_TRUE(direct.converged);
-
   const multigrid::Solution tight = solve_to(c, 1e-3);
   EXPECT_EQ(tight.report.status, multigrid::Status::converged)
       << multigrid::name(tight.report.status);
-  const oracle::FieldDifference field = oracle::difference(tight, direct.state);
+  const oracle::OracleResult nearest = oracle::newton(scene, oracle::state_of(scene, tight));
+  ASSERT_TRUE(nearest.converged);
+  const oracle::FieldDifference field = oracle::difference(tight, nearest.state);
   EXPECT_LT(field.rms, 3e-3);
-  EXPECT_LT(field.max, 5e-2);
+  EXPECT_LT(field.max, 3e-2);
+  const double highest = oracle::lagrangian(scene, oracle::newton(scene).state);
+  EXPECT_LT(oracle::lagrangian(scene, nearest.state), highest * (1.0 + 1e-9));
+}
 
+// The usual tolerance is a tenth of the estimated discretisation error.
+TEST_P(DefaultPath, LeavesTheAlgebraicErrorThatItReports) {
+  const scenes::ReferenceCase& c = GetParam();
+  const oracle::OracleScene scene = oracle::make_scene(c.scene, kCells, c.kappa, kDefaultRows);
   const multigrid::Solution usual = solve_to(c, 0.0);
   EXPECT_EQ(usual.report.status, multigrid::Status::converged)
       << multigrid::name(usual.report.status);
-  const oracle::FieldDifference rough = oracle::difference(usual, direct.state);
-  EXPECT_LT(rough.rms, 0.2 * usual.report.discretisation_rms_px * kCells);
+  const oracle::OracleResult nearest = oracle::newton(scene, oracle::state_of(scene, usual));
+  ASSERT_TRUE(nearest.converged);
+  const oracle::FieldDifference left = oracle::difference(usual, nearest.state);
+  EXPECT_LT(left.rms, 0.2 * usual.report.discretisation_rms_px * kCells);
 }
 
 TEST_P(DefaultPath, StaysNearTheExactRows) {

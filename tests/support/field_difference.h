@@ -30,6 +30,20 @@ inline FieldDifference difference(const multigrid::Solution& solution, const Sta
   return result;
 }
 
+/// The solution as a state of the oracle, with q = 0: Newton's step does not depend on the q it
+/// starts from.
+inline State state_of(const OracleScene& scene, const multigrid::Solution& solution) {
+  State state = rest(scene);
+  for (Eigen::Index node = 0; node < state.x.size(); ++node) {
+    state.x[node] += solution.u_px[std::size_t(node)] / solution.lattice.cell_px;
+    state.y[node] += solution.v_px[std::size_t(node)] / solution.lattice.cell_px;
+  }
+  for (std::size_t cell = 0; cell < solution.pressure.size(); ++cell) {
+    state.P[Eigen::Index(cell)] = solution.pressure[cell];
+  }
+  return state;
+}
+
 /// Two solutions of the solver on the unit square, the second on a lattice `ratio` times finer,
 /// compared at the nodes of the first and in its cells.
 inline FieldDifference difference(const multigrid::Solution& coarse,
