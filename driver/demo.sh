@@ -20,6 +20,7 @@ mkdir -p "$results"
 for scene in "$@"; do
   for needed in "$drumhead" "$examples/$scene.toml" "$examples/$scene.svg"; do
     if [ ! -e "$results/$scene.png" ] || [ "$needed" -nt "$results/$scene.png" ]; then
+      echo "Warping $examples/$scene.toml"
       rsvg-convert --output "$results/$scene-before.png" "$examples/$scene.svg"
       # Exit code 1: not converged, and said so; its picture is there to be looked at all the same.
       "$drumhead" warp "$examples/$scene.toml" || [ $? = 1 ]
