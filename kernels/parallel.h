@@ -18,16 +18,22 @@ inline int threads_for(std::ptrdiff_t nodes) {
   return nodes < kSerialNodes || omp_in_parallel() ? 1 : omp_get_max_threads();
 }
 
-/// body(j) for j in [begin, end), `columns` nodes each.
+/// body(j, thread) for j in [begin, end), `columns` nodes each.
 template <class F>
-void for_rows(int begin, int end, int columns, F&& body) {
+void for_rows_on_threads(int begin, int end, int columns, F&& body) {
   const int threads = threads_for(std::ptrdiff_t(end - begin) * columns);
   if (threads == 1) {
-    for (int j = begin; j < end; ++j) body(j);
+    for (int j = begin; j < end; ++j) body(j, 0);
     return;
   }
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (int j = begin; j < end; ++j) body(j);
+  for (int j = begin; j < end; ++j) body(j, omp_get_thread_num());
+}
+
+/// body(j) for j in [begin, end).
+template <class F>
+void for_rows(int begin, int end, int columns, F&& body) {
+  for_rows_on_threads(begin, end, columns, [&](int j, int) { body(j); });
 }
 
 /// Several sweeps over the same rows in one skewed pass, so that a row is still in cache when the next sweep

@@ -36,6 +36,15 @@ void clear_row(const Plane<T>& plane, int j) {
     std::fill_n(plane.half(j, parity), half_count(plane.columns, parity), T(0));
 }
 
+/// Residual row j of a level into buffers that served other levels: nodes on the fixed boundary get 0.
+template <class T>
+void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane, const Unknowns<const T>& f,
+                  const Unknowns<const T>& d, const SplitRow<T>& x, const SplitRow<T>& y, int j) {
+  kernels.residual_nodes(membrane, &f, d, x, y, j);
+  const int last = d.x.columns - 1;
+  for (const SplitRow<T>& row : {x, y}) row.half[0][0] = row.half[last & 1][last >> 1] = T(0);
+}
+
 /// Fills coarse rows from the residual of a level, called with ascending rows of each thread's chunk.
 template <class T>
 class Restriction {
@@ -76,7 +85,7 @@ class Restriction {
   int hold(typename RowScratch<T>::Rows& rows, int j) {
     const int slot = j & 3;
     if (rows.held[slot] != j) {
-      kernels_.residual_nodes(level_.membrane, &f_, d_, split(rows.x[slot]), split(rows.y[slot]), j);
+      residual_row(kernels_, level_.membrane, f_, d_, split(rows.x[slot]), split(rows.y[slot]), j);
       rows.held[slot] = j;
     }
     return slot;
@@ -179,6 +188,39 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknown
   });
 }
 
+template <class T>
+double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
+  const KernelTable<T>& kernels = table<T>();
+  const Unknowns<const T> d = level.d, f = level.f;
+  const int rows = d.x.rows - 1;
+  const double volume_weight = 1.0 / (double(level.membrane.spacing) * double(level.membrane.spacing));
+  scratch.forget();
+  std::vector<double> of_row(static_cast<std::size_t>(rows));
+  for_rows_on_threads(0, rows, d.x.columns, [&](int j, int thread) {
+    typename RowScratch<T>::Rows& buffer = scratch.rows(thread);
+    auto square = [&](T* row, int columns) {
+      const Plane<const T> plane{row, 0, scratch.odd(), columns, 1};
+      return kernels.dot(plane, plane, 0);
+    };
+    auto split = [&](T* row) { return SplitRow<T>{{row, row + scratch.odd()}}; };
+    double sum = 0.0;
+    if (j > 0) {
+      residual_row(kernels, level.membrane, f, d, split(buffer.x[0]), split(buffer.y[0]), j);
+      sum = square(buffer.x[0], d.x.columns) + square(buffer.y[0], d.x.columns);
+    }
+    if (d.p) {
+      kernels.residual_cells(level.membrane, &f, d, split(buffer.p[0]), j);
+      sum += volume_weight * square(buffer.p[0], d.p.columns);
+    }
+    of_row[std::size_t(j)] = sum;
+  });
+  double total = 0.0;
+  for (const double sum : of_row) total += sum;
+  return total;
+}
+
+template double residual_norm2(const LevelSystem<float>&, RowScratch<float>&);
+template double residual_norm2(const LevelSystem<double>&, RowScratch<double>&);
 template class RowScratch<float>;
 template class RowScratch<double>;
 template void relax(const LevelSystem<float>&, const RelaxStages&, const Unknowns<const float>*,

@@ -6,19 +6,12 @@
 #include <drumhead/kernels/cuts.h>
 
 namespace drumhead::multigrid {
-namespace {
-
-// The preconditioner keeps the clamp at 1, positive definite, whatever the clamp of the equations: GCR needs
-// .69 per cycle instead of .91 (S4, kappa 100, 32², exact Hessian), .70 instead of .78 at 64².
-constexpr double kMostTheta = 1.0;
-
-}  // namespace
 
 template <class T>
-Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure)
+Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
     : hierarchy_(hierarchy), top_(top), pressure_(pressure) {
   hierarchy.restrict_state(top);
-  clamp_width_ = std::min(hierarchy[top].clamp_width, T(kMostTheta));
+  clamp_width_ = std::min(hierarchy[top].clamp_width, most_clamp);
   for (int l = top + 1; l < hierarchy.size(); ++l) hierarchy[l].clamp_width = clamp_width_;
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
@@ -39,8 +32,8 @@ kernels::LevelSystem<T> Cycle<T>::system(int l) {
 }
 
 template <class T>
-void Cycle<T>::run(CycleKind kind) {
-  descend(top_, kind, true);
+void Cycle<T>::run(CycleKind kind, bool from_zero) {
+  descend(top_, kind, from_zero);
 }
 
 template <class T>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Flexible GCR around the cycles: minimises the residual over the last few directions, so that a cycle that
-// amplifies a few error components (strong stretch, indefinite systems far from a solution) still converges.
+// Solution of one Newton system on a level. Cycles alone first: they need no memory besides the level's own.
+// Only where they reduce the residual too little does flexible GCR take over, which minimises the residual over
+// its last few directions (strong stretch, indefinite systems far from a solution, exact curve rows).
 #include "cycle.h"
 
 namespace drumhead::multigrid {
@@ -13,43 +14,23 @@ struct Vector {
   std::vector<T> q;
 };
 
-struct KrylovOptions {
+struct LinearOptions {
   double reduction = 0.1;   ///< of the residual norm
   int most_cycles = 20;
-  int directions = 2;       ///< stored pairs, each 6 values a node
+  int directions = 2;       ///< stored pairs of GCR, each 6 values a node
   CycleKind kind = CycleKind::f;
 };
 
-struct KrylovReport {
+struct LinearReport {
   int cycles = 0;
   double residual = 1.0;    ///< relative to the right-hand side
 };
 
+/// Solves the system of level `top` at its state (`pressure` false: the harmonic system, kappa = 0) for its
+/// right-hand side f, fq of norm `start`, which does not carry curve forces and is lost. The solution is in
+/// d, dq.
 template <class T>
-class Krylov {
- public:
-  /// Vectors for level `top`. The system solved has the jump term of the equations, the cycle the one inside.
-  Krylov(Hierarchy<T>& hierarchy, int top, bool pressure, grid::MemoryMeter& meter);
-
-  /// x := approximate solution of H x = b from zero. b is overwritten with the residual.
-  KrylovReport solve(Vector<T>& b, Vector<T>& x, const KrylovOptions& options);
-
-  Vector<T> make_vector();
-
- private:
-  struct Direction {
-    Vector<T> z, image;
-    double norm2 = 0.0;
-  };
-  void apply(const Vector<T>& d, Vector<T>& out);
-  double dot(const Vector<T>& a, const Vector<T>& b) const;
-  void combine(double a, const Vector<T>& x, double b, Vector<T>& y) const;
-
-  Hierarchy<T>& hierarchy_;
-  Level<T>& level_;
-  bool pressure_;
-  grid::MemoryMeter& meter_;
-  std::vector<Direction> directions_;
-};
+LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, double start,
+                          const LinearOptions& options, grid::MemoryMeter& meter);
 
 }  // namespace drumhead::multigrid

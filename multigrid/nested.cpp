@@ -35,14 +35,14 @@ int start_level(const Hierarchy<T>& hierarchy, double smallest_feature) {
 }
 
 template <class T>
-KrylovOptions krylov_options(const Level<T>& level, bool start) {
-  KrylovOptions krylov;
+LinearOptions linear_options(const Level<T>& level, bool start) {
+  LinearOptions linear;
   // Small lattices can afford directions, and the states on the way to the first solution need them.
   if (start) {
-    krylov.directions = level.nodes() < kSmallNodes ? 40 : 10;
-    krylov.most_cycles = 80;
+    linear.directions = level.nodes() < kSmallNodes ? 40 : 10;
+    linear.most_cycles = 80;
   }
-  return krylov;
+  return linear;
 }
 
 /// Options of the last steps of exact constraints, from the solution with the jump. Modes of q that the jump
@@ -53,7 +53,7 @@ NewtonOptions exact_options(const Level<T>& level) {
   NewtonOptions options;
   options.most_steps = kStartSteps;
   options.tolerance_rms = options.tolerance_max = kExactMove;
-  options.krylov = {.reduction = 1e-4, .most_cycles = small ? 400 : 120, .directions = small ? 200 : 40};
+  options.linear = {.reduction = 1e-4, .most_cycles = small ? 400 : 120, .directions = small ? 200 : 40};
   return options;
 }
 
@@ -81,12 +81,12 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
         options.progress({level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
     };
     Newton<T> newton(hierarchy, l, meter);
-    newton_options.krylov = krylov_options(level, l == start);
+    newton_options.linear = linear_options(level, l == start);
     newton_options.most_steps = kLevelSteps;
     newton_options.share_of_discretisation = kShare;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
     if (l == start) {
-      KrylovOptions harmonic = newton_options.krylov;
+      LinearOptions harmonic = newton_options.linear;
       harmonic.reduction = 1e-3;
       newton.harmonic(harmonic);
       newton_options.most_steps = kStartSteps;

@@ -16,7 +16,7 @@ constexpr double kGrow = 8.0;
 constexpr double kShortestStep = 1e-4;
 constexpr double kExactTheta = 1e6;
 // Pressures looked at for the median; the clamp does not need it exactly.
-constexpr int kMedianSamples = 1 << 16;
+constexpr int kMedianSamples = 1 << 12;
 // A linear solution this bad is not worth a step with an unclamped Hessian.
 constexpr double kStagnated = 0.5;
 // A step is taken against the merit when the norm of all equations falls below this share.
@@ -31,14 +31,14 @@ Newton<T>::Newton(Hierarchy<T>& hierarchy, int top, grid::MemoryMeter& meter)
 template <class T>
 void Newton<T>::set_force(bool pressure) {
   const kernels::Cuts<T> cuts = level_.cuts.view(T(hierarchy_.traits().jump));
-  kernels::Unknowns<T> f = force_.fields.view();
+  kernels::Unknowns<T> f = level_.f.view();
   kernels::force<T>(pressure ? level_.membrane() : level_.harmonic(), f);
   kernels::add_curve_force<T>(cuts, level_.q.data(), T(1), f);
   const kernels::Unknowns<const T> u{level_.ux.view(), level_.uy.view(), {}};
-  kernels::apply_cuts<T>(cuts, u, level_.q.data(), force_.q.data());
+  kernels::apply_cuts<T>(cuts, u, level_.q.data(), level_.fq.data());
   for (std::size_t k = 0; k < level_.wanted.size(); ++k) {
-    force_.q[2 * k] = T(-(level_.wanted[k].x + double(force_.q[2 * k])));
-    force_.q[2 * k + 1] = T(-(level_.wanted[k].y + double(force_.q[2 * k + 1])));
+    level_.fq[2 * k] = T(-(level_.wanted[k].x + double(level_.fq[2 * k])));
+    level_.fq[2 * k + 1] = T(-(level_.wanted[k].y + double(level_.fq[2 * k + 1])));
   }
 }
 
@@ -69,7 +69,7 @@ void Newton<T>::prepare_curve_merit() {
   gap_.assign(values, 0.0);
   slope_.assign(values, 0.0);
   std::vector<T> q(values), image(values), zero(values, T(0));
-  for (std::size_t k = 0; k < values; ++k) q[k] = level_.q[k] + dx_.q[k];
+  for (std::size_t k = 0; k < values; ++k) q[k] = level_.q[k] + level_.dq[k];
   const kernels::Unknowns<const T> u{level_.ux.view(), level_.uy.view(), {}};
   kernels::apply_cuts<T>(cuts, u, q.data(), image.data());
   penalty_ = 0.0;
@@ -78,7 +78,7 @@ void Newton<T>::prepare_curve_merit() {
     gap_[k] = (k % 2 ? b.y : b.x) + double(image[k]);
     penalty_ = std::max(penalty_, 1.5 * std::abs(double(q[k])) / double(cuts.length[k / 2]));
   }
-  kernels::apply_cuts<T>(cuts, dx_.fields.view(), zero.data(), image.data());
+  kernels::apply_cuts<T>(cuts, level_.d.view(), zero.data(), image.data());
   for (std::size_t k = 0; k < values; ++k) slope_[k] = double(image[k]);
 }
 
@@ -94,10 +94,10 @@ double Newton<T>::curve_merit(double step) const {
 template <class T>
 double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
-  const auto f = force_.fields.view();
-  double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y) +
-               kernels::dot<T>(f.p, f.p) / double(level_.spacing * level_.spacing);
-  for (const T value : force_.q) sum += double(value) * double(value);
+  const auto f = level_.f.view();
+  double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y);
+  if (pressure) sum += kernels::dot<T>(f.p, f.p) / double(level_.spacing * level_.spacing);
+  for (const T value : level_.fq) sum += double(value) * double(value);
   return std::sqrt(sum);
 }
 
@@ -119,7 +119,7 @@ NewtonStep Newton<T>::line_search(double norm_before) {
   const kernels::Membrane<T> membrane = level_.membrane();
   NewtonStep result;
   auto merit = [&](double step) {
-    const kernels::EnergySums sums = kernels::energy<T>(membrane, dx_.fields.view(), T(step));
+    const kernels::EnergySums sums = kernels::energy<T>(membrane, level_.d.view(), T(step));
     result.inverted_cells = int(sums.inverted_cells);
     return sums.elastic + sums.volume_merit + curve_merit(step);
   };
@@ -140,20 +140,18 @@ NewtonStep Newton<T>::line_search(double norm_before) {
 
 template <class T>
 void Newton<T>::update(double step, bool pressure) {
-  const auto d = dx_.fields.view();
+  const auto d = level_.d.view();
   kernels::combine<T>(T(step), kernels::Plane<const T>(d.x), T(1), level_.ux.view());
   kernels::combine<T>(T(step), kernels::Plane<const T>(d.y), T(1), level_.uy.view());
   if (pressure) kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
-  for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * dx_.q[k];
+  for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
 }
 
 template <class T>
-KrylovReport Newton<T>::harmonic(const KrylovOptions& options) {
-  Krylov<T> krylov(hierarchy_, hierarchy_.index_of(level_), false, meter_);
-  force_ = krylov.make_vector();
-  dx_ = krylov.make_vector();
-  set_force(false);
-  const KrylovReport report = krylov.solve(force_, dx_, options);
+LinearReport Newton<T>::harmonic(const LinearOptions& options) {
+  const double norm = force_norm(false);
+  const LinearReport report =
+      solve_linear(hierarchy_, hierarchy_.index_of(level_), false, norm, options, meter_);
   update(1.0, false);
   return report;
 }
@@ -169,16 +167,14 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   NewtonReport report;
   report.rate = options.expected_rate;
   const bool pressure = bool(level_.pressure);
-  Krylov<T> krylov(hierarchy_, hierarchy_.index_of(level_), pressure, meter_);
-  force_ = krylov.make_vector();
-  dx_ = krylov.make_vector();
+  const int top = hierarchy_.index_of(level_);
   report.status = Status::limit;
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
     const double norm = force_norm(pressure);
-    KrylovReport linear = krylov.solve(force_, dx_, options.krylov);
+    LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
     if (linear.residual > kStagnated && clamp.theta > 1.0) {
       // Indefinite far from a solution: the positive definite Hessian always makes progress.
       clamp.most = std::max(1.0, clamp.theta / kGrow);
@@ -186,10 +182,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       set_clamp(1.0);
       set_force(pressure);
       const int wasted = linear.cycles;
-      linear = krylov.solve(force_, dx_, options.krylov);
+      linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
       linear.cycles += wasted;
     }
-    const auto d = dx_.fields.view();
+    const auto d = level_.d.view();
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
     const double rms = std::sqrt(squares / double(level_.nodes()));
     NewtonStep step = std::isfinite(rms) ? line_search(norm) : NewtonStep{.step = 0.0};

@@ -19,7 +19,7 @@ struct NewtonOptions {
   double share_of_discretisation = 0.0;
   int most_steps = 8;
   double expected_rate = 0.5;   ///< contraction expected of a step before two have been seen
-  KrylovOptions krylov;
+  LinearOptions linear;
 };
 
 struct NewtonReport {
@@ -42,7 +42,7 @@ class Newton {
   Newton(Hierarchy<T>& hierarchy, int top, grid::MemoryMeter& meter);
 
   /// Sets the state to the harmonic one (kappa = 0; linear): x̂ and q.
-  KrylovReport harmonic(const KrylovOptions& options);
+  LinearReport harmonic(const LinearOptions& options);
 
   /// Steps from the current state of the level.
   NewtonReport run(const NewtonOptions& options, ClampSchedule& clamp,
@@ -63,7 +63,6 @@ class Newton {
   Hierarchy<T>& hierarchy_;
   Level<T>& level_;
   grid::MemoryMeter& meter_;
-  Vector<T> force_, dx_;
   std::vector<double> gap_, slope_;  ///< per curve row: b − W u − M q⁺ and −W du
   double penalty_ = 0.0;             ///< nu
 };

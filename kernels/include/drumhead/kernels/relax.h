@@ -45,6 +45,11 @@ class RowScratch {
   std::vector<Rows> rows_;
 };
 
+/// Σ (f − H d)² over momentum rows plus that over volume rows per spacing² (so that rows are of one size on
+/// every level); curve rows are the caller's. Nothing is stored.
+template <class T>
+double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch);
+
 struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
 };
