@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "svg_curves.h"
 
+#include <2geom/exception.h>
 #include <2geom/transforms.h>
 #include <algorithm>
 #include <array>
@@ -47,7 +48,7 @@ struct Drawn {
   std::string name;  ///< without suffix
   Role role = Role::none;
   pugi::xml_node element;
-  Geom::PathVector paths;
+  std::vector<Placed> paths;
 };
 
 /// Calls visit(element, role of the enclosing layer, user units → those of the root) for whatever
@@ -135,7 +136,11 @@ class CurveReader {
       document_.fail(element, "its suffix says another layer than '" +
                                   std::string(kRoleNames[std::size_t(role)]) + "', where it lies");
     }
-    add(element, name, role, shape_paths(document_, view_, shape) * affine);
+    std::vector<Placed> paths;
+    for (const Geom::Path& path : shape_paths(document_, view_, shape)) {
+      paths.push_back({path, affine});
+    }
+    add(element, name, role, std::move(paths));
   }
 
   pugi::xml_node used_shape(pugi::xml_node use) const {
@@ -148,7 +153,7 @@ class CurveReader {
     return shape;
   }
 
-  void add(pugi::xml_node element, std::string name, Role role, Geom::PathVector paths) {
+  void add(pugi::xml_node element, std::string name, Role role, std::vector<Placed> paths) {
     if (name.empty()) {
       if (role != Role::pin) {
         document_.fail(element, "has no name (inkscape:label or id) to pair it by");
@@ -156,11 +161,6 @@ class CurveReader {
       name = "pin at line " + document_.place(element).substr(document_.file().string().size() + 1);
     }
     if (paths.empty()) document_.fail(element, "has no length");
-    for (const Geom::Path& path : paths) {
-      const auto bounds = path.boundsFast();
-      if (!bounds || bounds->diameter() <= 0) document_.fail(element, "has no length");
-      if (!std::isfinite(bounds->diameter())) document_.fail(element, "has a point at infinity");
-    }
     drawn_.push_back({std::move(name), role, element, std::move(paths)});
   }
 
@@ -187,9 +187,18 @@ class CurveReader {
   }
 
   void pair(const Drawn& one) {
+    try {
+      pair_paths(one);
+    } catch (const Geom::Exception& error) {
+      document_.fail(one.element, error.what());
+    }
+  }
+
+  void pair_paths(const Drawn& one) {
     if (one.role == Role::pin) {
       for (std::size_t k = 0; k < one.paths.size(); ++k) {
         const Chain held = chain(one.paths[k]);
+        check(one, held);
         add_curve(one, k, held, held);
       }
       return;
@@ -212,6 +221,8 @@ class CurveReader {
 
   void pair_subpath(const Drawn& source, const Drawn& target, std::size_t k) {
     auto [from, to] = corresponding_chains(source.paths[k], target.paths[k]);
+    check(source, from);
+    check(target, to);
     const std::string name = part_name(source, k);
     if (closed(from) && !closed(to)) {
       document_.fail(target.element, "'" + name + "' is open but its source is closed");
@@ -223,8 +234,17 @@ class CurveReader {
     add_curve(source, k, std::move(from), std::move(to));
   }
 
+  /// Points at infinity or not apart come from absurd numbers and flattening transforms.
+  void check(const Drawn& drawn, const Chain& chain) const {
+    double length = 0.0;
+    for (const grid::CubicBezier& piece : chain) {
+      for (int k = 0; k < 3; ++k) length += grid::length(piece.control[k + 1] - piece.control[k]);
+    }
+    if (!std::isfinite(length)) document_.fail(drawn.element, "has a point at infinity");
+    if (length <= 0) document_.fail(drawn.element, "has no length");
+  }
+
   void add_curve(const Drawn& drawn, std::size_t k, Chain source, Chain target) {
-    if (source.empty() || target.empty()) document_.fail(drawn.element, "has no length");
     SvgCurve curve;
     curve.pair.name = part_name(drawn, k);
     curve.pair.source = std::move(source);

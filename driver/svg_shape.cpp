@@ -25,6 +25,15 @@ class ShapeReader {
       : document_(document), whole_(whole), element_(element) {}
 
   Geom::PathVector read() {
+    try {
+      return read_subpaths();
+    } catch (const Geom::Exception& error) {  // ellipses of absurd size
+      fail(error.what());
+    }
+  }
+
+ private:
+  Geom::PathVector read_subpaths() {
     const std::string_view shape = kind(element_);
     if (shape == "path")
       read_path();
@@ -46,7 +55,6 @@ class ShapeReader {
     return paths;
   }
 
- private:
   double diagonal() const { return std::hypot(whole_.width, whole_.height) / std::sqrt(2.0); }
 
   double length(const char* name, double whole) const {
@@ -212,14 +220,21 @@ grid::CubicBezier as_cubic(const Geom::Curve& segment) {
   return grid::straight(a, b);
 }
 
-void append(const Geom::Curve& segment, int pieces, Chain& chain) {
+/// Transformed as Béziers, which is exact: 2geom's own transform of arcs loses digits, or throws,
+/// where it flattens them.
+grid::CubicBezier placed(grid::CubicBezier piece, const Geom::Affine& to_picture) {
+  for (grid::Point& p : piece.control) p = point(Geom::Point(p.x, p.y) * to_picture);
+  return piece;
+}
+
+void append(const Geom::Curve& segment, int pieces, const Geom::Affine& to_picture, Chain& chain) {
   const auto* arc = as_arc(segment);
   for (int k = 0; k < pieces; ++k) {
     const double t0 = double(k) / pieces, t1 = double(k + 1) / pieces;
-    if (arc)
-      chain.push_back(arc_piece(*arc, t0, t1));
-    else
-      chain.push_back(pieces == 1 ? as_cubic(segment) : as_cubic(segment).piece(t0, t1));
+    const grid::CubicBezier piece = arc           ? arc_piece(*arc, t0, t1)
+                                    : pieces == 1 ? as_cubic(segment)
+                                                  : as_cubic(segment).piece(t0, t1);
+    chain.push_back(placed(piece, to_picture));
   }
 }
 
@@ -238,14 +253,16 @@ Geom::PathVector shape_paths(const SvgDocument& document, const SvgView& whole,
   return ShapeReader(document, whole, element).read();
 }
 
-Chain chain(const Geom::Path& path) {
+Chain chain(const Placed& path) {
   Chain all;
-  for (const auto& segment : segments_of(path)) append(*segment, pieces_of(*segment), all);
+  for (const auto& segment : segments_of(path.path)) {
+    append(*segment, pieces_of(*segment), path.to_picture, all);
+  }
   return all;
 }
 
-std::pair<Chain, Chain> corresponding_chains(const Geom::Path& source, const Geom::Path& target) {
-  const Segments from = segments_of(source), to = segments_of(target);
+std::pair<Chain, Chain> corresponding_chains(const Placed& source, const Placed& target) {
+  const Segments from = segments_of(source.path), to = segments_of(target.path);
   if (from.size() != to.size()) {
     std::pair<Chain, Chain> chains{chain(source), chain(target)};
     if (chains.first.size() == chains.second.size() && !chains.second.empty()) {
@@ -258,8 +275,8 @@ std::pair<Chain, Chain> corresponding_chains(const Geom::Path& source, const Geo
   std::pair<Chain, Chain> chains;
   for (std::size_t k = 0; k < from.size(); ++k) {
     const int pieces = std::max(pieces_of(*from[k]), pieces_of(*to[k]));
-    append(*from[k], pieces, chains.first);
-    append(*to[k], pieces, chains.second);
+    append(*from[k], pieces, source.to_picture, chains.first);
+    append(*to[k], pieces, target.to_picture, chains.second);
   }
   return chains;
 }

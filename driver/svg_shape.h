@@ -23,14 +23,20 @@ Geom::PathVector shape_paths(const SvgDocument& document, const SvgView& whole,
 
 using Chain = std::vector<grid::CubicBezier>;
 
-/// A subpath as cubic Béziers. Arcs become one Bézier for every 45 degrees or part of them: 4e-6 of
-/// their radius from the circle.
-Chain chain(const Geom::Path& path);
+/// A subpath in its own user units and where they lie.
+struct Placed {
+  Geom::Path path;
+  Geom::Affine to_picture;
+};
+
+/// A subpath as cubic Béziers in picture pixels. Arcs become one Bézier for every 45 degrees or
+/// part of them: 4e-6 of their radius from the circle.
+Chain chain(const Placed& path);
 
 /// Source and target as Béziers. Where both subpaths have the same number of segments (those
 /// without length not counted), each segment is cut into the same number of Béziers on both sides,
 /// so that equal parameters correspond; elsewhere the two chains get different numbers of Béziers,
 /// which grid::matched takes by arc length.
-std::pair<Chain, Chain> corresponding_chains(const Geom::Path& source, const Geom::Path& target);
+std::pair<Chain, Chain> corresponding_chains(const Placed& source, const Placed& target);
 
 }  // namespace drumhead::driver
