@@ -30,7 +30,8 @@ double largest(const Plane<const T>& a) {
   std::vector<double> of_row(static_cast<std::size_t>(a.rows));
   for_rows(0, a.rows, a.columns, [&](int j) { of_row[std::size_t(j)] = kernels.largest(a, j); });
   double most = 0.0;
-  for (const double row : of_row) most = row <= most ? most : row;
+  for (const double row : of_row)
+    if (row > most || row != row) most = row;
   return most;
 }
 

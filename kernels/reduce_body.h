@@ -22,8 +22,8 @@ double largest_row(const Plane<const T>& a, int j) {
     const T* values = a.half(j, parity);
     for (int k = 0; k < half_count(a.columns, parity); ++k) {
       const T size = magnitude(values[k]);
-      // A NaN must not hide behind a comparison that is false.
-      largest = size <= largest ? largest : size;
+      // A NaN comes in by the second test and stays, because no size is greater.
+      if (size > largest || size != size) largest = size;
     }
   }
   return double(largest);
