@@ -11,7 +11,13 @@ drumhead_compile_settings(drumhead_kernel_oracle)
 target_compile_options(drumhead_kernel_oracle PRIVATE -O2)
 target_link_libraries(drumhead_kernel_oracle PUBLIC drumhead_fields drumhead_oracle)
 
-foreach(name elastic relax)
+foreach(name cuts elastic relax)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_kernel_oracle LABEL unit)
 endforeach()
+foreach(name fused isa properties reduce transfer)
+  drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
+    LINK drumhead_fields LABEL unit)
+endforeach()
+drumhead_test(NAME kernels_threads_test SOURCES kernels_threads_test.cpp
+  LINK drumhead_fields OpenMP::OpenMP_CXX LABEL unit)
