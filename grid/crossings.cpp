@@ -36,7 +36,8 @@ void add_turning_points(const Cubic& c, std::vector<double>& out) {
   if (larger != 0.0) add(q0 / larger);
 }
 
-/// The crossing of level between t0 and t1, where the coordinate is monotone: Newton kept in a bracket.
+/// The crossing of level between t0 and t1, where the coordinate is monotone: Newton kept in a
+/// bracket.
 double crossing(const Cubic& c, double level, double t0, double t1) {
   const bool rising = value(c, t1) > value(c, t0);
   double low = t0, high = t1, t = 0.5 * (t0 + t1);
@@ -61,6 +62,8 @@ void add_crossings(const Cubic& c, std::vector<double>& turning, std::vector<dou
   std::ranges::sort(turning);
   for (std::size_t n = 0; n + 1 < turning.size(); ++n) {
     const double x0 = value(c, turning[n]), x1 = value(c, turning[n + 1]);
+    // A turn on a line may be an inflection, where the curve passes through it without slope.
+    if (n > 0 && std::abs(x0 - std::round(x0)) <= kSnap) out.push_back(turning[n]);
     const double first = std::ceil(std::min(x0, x1) + kSnap), last = std::max(x0, x1) - kSnap;
     for (double level = first; level < last; level += 1.0)
       out.push_back(crossing(c, level, turning[n], turning[n + 1]));
