@@ -21,3 +21,7 @@ foreach(name fused isa properties reduce transfer)
 endforeach()
 drumhead_test(NAME kernels_threads_test SOURCES kernels_threads_test.cpp
   LINK drumhead_fields OpenMP::OpenMP_CXX LABEL unit)
+foreach(name coarsen curve cut_cells field lattice material)
+  drumhead_test(NAME grid_${name}_test SOURCES grid_${name}_test.cpp
+    LINK drumhead::grid LABEL unit)
+endforeach()
