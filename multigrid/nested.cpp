@@ -14,7 +14,9 @@ constexpr double kCellsPerFeature = 4.0;
 // A start finer than this would cost more than it is worth.
 constexpr int kMostStartCells = 128;
 constexpr int kStartSteps = 60;
-constexpr int kLevelSteps = 8;
+constexpr int kLevelSteps = 20;
+constexpr int kPathSteps = 12;
+constexpr int kStepsPerPathStep = 4;
 // Error left on levels that only start the next one, and on the finest: share of the estimated
 // discretisation error.
 constexpr double kShare = 0.1;
@@ -67,6 +69,50 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 
 }  // namespace
 
+namespace {
+
+/// Wanted displacements of level l from those of the finest level, as coarsening averages them.
+template <class T>
+void set_wanted(Hierarchy<T>& hierarchy, int l, std::vector<grid::Point> wanted) {
+  for (int m = 0; m < l; ++m) {
+    const CutTransfer<T>& transfer = hierarchy[m].to_coarse;
+    std::vector<grid::Point> coarse(hierarchy[m + 1].wanted.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      if (transfer.parent[k] >= 0) {
+        grid::Point& parent = coarse[std::size_t(transfer.parent[k])];
+        parent = parent + double(transfer.share[k]) * wanted[k];
+      }
+    wanted = std::move(coarse);
+  }
+  hierarchy[l].wanted = std::move(wanted);
+}
+
+/// The first state on the start level: harmonic, and for large rotations on along the load path.
+template <class T>
+void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
+                const NewtonOptions& newton_options, Newton<T>& newton, ClampSchedule& clamp) {
+  LinearOptions harmonic = newton_options.linear;
+  harmonic.reduction = 1e-3;
+  if (!options.partway) {
+    newton.harmonic(harmonic);
+    return;
+  }
+  const std::vector<grid::Point> whole = hierarchy[start].wanted;
+  for (int n = 1; n < kPathSteps; ++n) {
+    set_wanted(hierarchy, start, options.partway(double(n) / kPathSteps));
+    if (n == 1) newton.harmonic(harmonic);
+    NewtonOptions part = newton_options;
+    part.most_steps = kStepsPerPathStep;
+    part.tolerance_rms = 0.05 * double(hierarchy[start].spacing);
+    clamp = {};
+    newton.run(part, clamp, {});
+  }
+  hierarchy[start].wanted = whole;
+  clamp = {};
+}
+
+}  // namespace
+
 template <class T>
 void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
                       grid::MemoryMeter& meter, SolveReport& report) {
@@ -86,12 +132,10 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     newton_options.share_of_discretisation = kShare;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
     if (l == start) {
-      LinearOptions harmonic = newton_options.linear;
-      harmonic.reduction = 1e-3;
-      newton.harmonic(harmonic);
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_discretisation = 0.0;
       newton_options.tolerance_rms = 0.01 * double(level.spacing);
+      find_start(hierarchy, start, options, newton_options, newton, clamp);
     } else {
       hierarchy.prolong_state(l);
     }

@@ -13,7 +13,8 @@ struct NestedOptions {
   bool exact = false;
   double tolerance_cells = 0.0;   ///< 0: a tenth of the estimated discretisation error
   double smallest_feature = 0.0;  ///< extent of the smallest curve in finest cells
-  double kappa = 1.0;             ///< of the scene, chooses the cycle
+  /// Wanted displacements of the finest cuts at share t of a load path; empty: no path is needed.
+  std::function<std::vector<grid::Point>(double t)> partway;
   std::function<void(const Progress&)> progress;
 };
 

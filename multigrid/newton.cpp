@@ -19,6 +19,9 @@ constexpr double kExactTheta = 1e6;
 constexpr int kMedianSamples = 1 << 12;
 // A linear solution this bad is not worth a step with an unclamped Hessian.
 constexpr double kStagnated = 0.5;
+// So many steps in a row shorter than kCreep lead nowhere.
+constexpr double kCreep = 1e-2;
+constexpr int kMostCreeping = 5;
 // A step is taken against the merit when the norm of all equations falls below this share.
 constexpr double kSolves = 0.5;
 
@@ -161,6 +164,14 @@ bool Newton<T>::finite(const NewtonStep& step) const {
   return std::isfinite(step.dx_rms_px) && std::isfinite(step.dx_max_px) && std::isfinite(step.residual);
 }
 
+/// Moves below this are rounding: the state's largest displacement times the precision of T.
+template <class T>
+double Newton<T>::precision() const {
+  const double largest =
+      std::max(kernels::largest<T>(level_.ux.view()), kernels::largest<T>(level_.uy.view()));
+  return double(std::numeric_limits<T>::epsilon()) * largest;
+}
+
 template <class T>
 NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
                             const std::function<void(int)>& progress) {
@@ -169,6 +180,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   const bool pressure = bool(level_.pressure);
   const int top = hierarchy_.index_of(level_);
   report.status = Status::limit;
+  int creeping = 0;
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
@@ -204,7 +216,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     report.change_max += step.dx_max_px;
 
     const bool full = step.step == 1.0;
-    if (step.step == 0.0 && clamp.theta <= 1.0) {
+    creeping = step.step < kCreep ? creeping + 1 : 0;
+    if ((step.step == 0.0 && clamp.theta <= 1.0) || creeping >= kMostCreeping) {
       report.status = Status::stalled;
       return report;
     }
@@ -218,6 +231,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     if (full && report.error_rms <= wanted &&
         (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max)) {
       report.status = Status::converged;
+      return report;
+    }
+    if (full && rms <= precision()) {
+      report.status = Status::stalled;
       return report;
     }
     clamp.theta = full ? std::min(clamp.theta * kGrow, kExactTheta) : std::max(1.0, clamp.theta / kGrow);

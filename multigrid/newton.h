@@ -59,6 +59,7 @@ class Newton {
   NewtonStep line_search(double norm_before);
   void update(double step, bool pressure);
   bool finite(const NewtonStep& step) const;
+  double precision() const;
 
   Hierarchy<T>& hierarchy_;
   Level<T>& level_;

@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/isa.h>
 
 #include "analysis.h"
+#include "load_path.h"
 #include "nested.h"
 
 namespace drumhead::multigrid {
@@ -27,6 +29,12 @@ double seconds_since(Clock::time_point start) {
 // On the default path d and kappa are capped where a further increase changes nothing that is seen.
 constexpr double kMostWeight = 1e6;
 constexpr double kMostKappa = 1e4;
+// Beyond this turn of a curve (100 degrees) the harmonic start collapses.
+constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
+// Single precision is good to about a thousandth of a cell; below, and for exact rows, all is double.
+constexpr double kSinglePrecision = 1e-3;
+// A hard curve that misses its target by more than this many cells deserves a word.
+constexpr double kNotableGap = 1.0;
 // The q-jump of the default path and of the preconditioner.
 constexpr double kJump = 0.005;
 
@@ -155,11 +163,15 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.cut_seconds = seconds_since(start);
 
   const Clock::time_point solving = Clock::now();
-  const NestedOptions nested{.exact = options.exact,
-                             .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
-                             .smallest_feature = smallest_feature(problem),
-                             .kappa = material.kappa,
-                             .progress = options.progress};
+  NestedOptions nested{.exact = options.exact,
+                       .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
+                       .smallest_feature = smallest_feature(problem),
+                       .partway = {},
+                       .progress = options.progress};
+  if (largest_turn(problem.curves) > kLoadPathTurn)
+    nested.partway = [&](double t) {
+      return grid::cut(partway(problem.curves, t), problem.lattice, most_weight).wanted;
+    };
   nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
   report.solve_seconds = seconds_since(solving);
 
@@ -168,6 +180,20 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   export_state(hierarchy, solution);
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
+}
+
+/// Says which hard curves miss their targets visibly: the rows of a cell hold on average only, curves in one
+/// cell share a row, and a fixed edge or a stay too short for the lattice cannot follow.
+void note_gaps(const WarpProblem& problem, SolveReport& report) {
+  for (std::size_t n = 0; n < report.curves.size(); ++n) {
+    const CurveReport& curve = report.curves[n];
+    if (!std::isinf(problem.curves[n].weight)) continue;
+    if (curve.gap_max_px > kNotableGap * problem.lattice.cell_px)
+      report.notes.push_back("curve '" + curve.name + "' misses its target by up to " +
+                             std::to_string(curve.gap_max_px) + " px at (" +
+                             std::to_string(curve.worst_px.x) + ", " +
+                             std::to_string(curve.worst_px.y) + ") px");
+  }
 }
 
 }  // namespace
@@ -190,11 +216,13 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   solution.report.exact = options.exact;
   solution.report.isa = kernels::name(kernels::current_isa());
   solution.report.threads = omp_get_max_threads();
-  if (options.exact)
+  const double tolerance_cells = options.tolerance_px / problem.lattice.cell_px;
+  if (options.exact || (tolerance_cells > 0.0 && tolerance_cells < kSinglePrecision))
     solve_in<double>(problem, options, solution);
   else
     solve_in<float>(problem, options, solution);
   solution.report.curves = curve_gaps(solution, problem.curves);
+  note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);
   if (solution.pressure.empty()) solution.report.model = "harmonic";
   return solution;
