@@ -73,9 +73,8 @@ std::string help() {
   return text + kConventions;
 }
 
-std::string line(std::string text) {
-  const auto end = text.find_first_of("\r\n");
-  return end == std::string::npos ? text : text.substr(0, end);
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find_first_of("\r\n"));
 }
 
 struct Given {
@@ -147,7 +146,7 @@ std::optional<Options> read_command_line(int argc, char** argv) {
     std::cout << version.what() << '\n';
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    throw std::invalid_argument(line(error.what()) + " (see drumhead --help)");
+    throw std::invalid_argument(first_line(error.what()) + " (see drumhead --help)");
   }
   if (!warp->parsed()) {
     throw std::invalid_argument("no command was given; there is warp (see drumhead --help)");

@@ -10,9 +10,8 @@ namespace {
 constexpr const char* kUnassociated = "oiio:UnassociatedAlpha";
 constexpr const char* kWrittenFormats = "png, jpg, tif, exr, webp, bmp, tga, ppm, hdr";
 
-std::string first_line(std::string text) {
-  const auto end = text.find_first_of("\r\n");
-  return end == std::string::npos ? text : text.substr(0, end);
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find_first_of("\r\n"));
 }
 
 /// Calls colour(value, alpha) for every value that alpha weights.

@@ -14,8 +14,6 @@
 #include "atomic_file.h"
 #include "svg_curves.h"
 
-extern char** environ;
-
 namespace drumhead::driver {
 namespace {
 
@@ -58,14 +56,13 @@ void set(pugi::xml_node element, const char* name, const std::string& value) {
 
 /// Pictures beside the drawing are only found from its own folder.
 bool links_to_files(pugi::xml_node root) {
-  return bool(root.find_node([](pugi::xml_node node) {
-    for (const char* name : {"href", "xlink:href"}) {
-      const std::string_view href = node.attribute(name).value();
-      const bool picture = kind(node) == "image" || kind(node) == "feImage" || kind(node) == "use";
-      if (picture && !href.empty() && !href.starts_with('#') && !href.starts_with("data:"))
-        return true;
-    }
-    return false;
+  const auto outside = [](std::string_view href) {
+    return !href.empty() && !href.starts_with('#') && !href.starts_with("data:");
+  };
+  return bool(root.find_node([&](pugi::xml_node node) {
+    const bool shows = kind(node) == "image" || kind(node) == "feImage" || kind(node) == "use";
+    return shows && (outside(node.attribute("href").value()) ||
+                     outside(node.attribute("xlink:href").value()));
   }));
 }
 
@@ -80,6 +77,7 @@ std::string first_line(const fs::path& file) {
 /// started.
 int run(std::vector<std::string> words, const fs::path& log) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -123,7 +121,9 @@ Image rasterise(const fs::path& file) {
   set(document.root(), "width", width);
   set(document.root(), "height", height);
   set(document.root(), "preserveAspectRatio", "none");
-  const fs::path scratch = fs::temp_directory_path();
+  std::error_code error;
+  const fs::path scratch = fs::temp_directory_path(error);
+  if (error) throw std::runtime_error("TMPDIR names no folder, and rasterising needs one");
   const bool beside = links_to_files(document.root());
   // None of the three is committed: they go when this function ends.
   const AtomicFile copy((beside ? file.parent_path() : scratch) / "drumhead-drawing.svg");

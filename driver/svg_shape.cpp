@@ -7,6 +7,7 @@
 #include <2geom/path-sink.h>
 #include <2geom/svg-path-parser.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -91,7 +92,7 @@ class ShapeReader {
       // 2geom does not say where. Its block-wise feed, which could, loses digits at the ends of
       // blocks.
       const auto strange = data.find_first_not_of("MmZzLlHhVvCcSsQqTtAaEe0123456789+-., \t\r\n\f");
-      if (strange != data.npos) {
+      if (strange != std::string_view::npos) {
         fail("broken path data at '" + std::string(data.substr(strange, 16)) + "'");
       }
       fail("broken path data '" + std::string(data.substr(0, 40)) + "'");
@@ -241,11 +242,9 @@ void append(const Geom::Curve& segment, int pieces, const Geom::Affine& to_pictu
 }  // namespace
 
 bool is_shape(pugi::xml_node element) {
-  for (const std::string_view shape :
-       {"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"}) {
-    if (kind(element) == shape) return true;
-  }
-  return false;
+  constexpr std::array<std::string_view, 7> kShapes = {"path", "rect",     "circle", "ellipse",
+                                                       "line", "polyline", "polygon"};
+  return std::ranges::find(kShapes, kind(element)) != kShapes.end();
 }
 
 Geom::PathVector shape_paths(const SvgDocument& document, const SvgView& whole,

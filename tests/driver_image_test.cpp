@@ -11,7 +11,7 @@ namespace drumhead::driver {
 namespace {
 
 /// Every channel of every pixel different, in steps that 8 bits hold; alpha from 0 to 1.
-Image picture(int width, int height, int channels, OIIO::TypeDesc depth) {
+Image picture(int width, int height, int channels, const OIIO::TypeDesc& depth) {
   Image image{OIIO::ImageSpec(width, height, channels, depth), {}};
   for (int k = 0; k < width * height * channels; ++k) {
     image.pixels.push_back(float(k * 37 % 256) / 255);
@@ -151,7 +151,7 @@ TEST(DriverImage, ADrawingIsRasterisedWithItsCurvesHidden) {
   EXPECT_EQ(image.width(), 2000);
   EXPECT_EQ(image.height(), 1000);  // the viewBox is stretched, the height is not believed
   const auto pixel = [&](int x, int y) {
-    return &image.pixels[std::size_t((y * 2000 + x) * image.channels())];
+    return &image.pixels[(std::size_t(y) * 2000 + std::size_t(x)) * std::size_t(image.channels())];
   };
   EXPECT_EQ(pixel(500, 500)[0], 0);
   EXPECT_EQ(pixel(500, 500)[1], 1);

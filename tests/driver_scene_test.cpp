@@ -25,6 +25,7 @@ std::string error_of(const std::string& text) {
 Options from_command_line(std::vector<std::string> words) {
   words.insert(words.begin(), {"drumhead", "warp"});
   std::vector<char*> arguments;
+  arguments.reserve(words.size());
   for (std::string& word : words) arguments.push_back(word.data());
   return read_command_line(int(arguments.size()), arguments.data()).value();
 }
@@ -184,7 +185,9 @@ TEST(DriverScene, WrongFlagsNameTheFlag) {
     const std::string message = message_of([&] {
       from_command_line({"a.png", "b.svg", flag, value});
     });
-    EXPECT_NE(message.find(flag + " " + value + ": must be "), std::string::npos) << message;
+    std::string expected = flag;
+    expected.append(" ").append(value).append(": must be ");
+    EXPECT_NE(message.find(expected), std::string::npos) << message;
   }
   EXPECT_NE(message_of([] {
               from_command_line({"a.png", "--cells", "2", "--cell-size", "2"});

@@ -11,8 +11,6 @@
 #include <sstream>
 #include <stdexcept>
 
-extern char** environ;
-
 namespace drumhead::driver {
 
 namespace fs = std::filesystem;
@@ -54,6 +52,7 @@ RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& w
   std::vector<std::string> all{DRUMHEAD_EXECUTABLE};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> arguments;
+  arguments.reserve(all.size() + 1);
   for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -72,7 +71,7 @@ RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& w
 }
 
 std::string drawing(int width, int height, const std::string& elements) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(width) + " " +
+  return R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" + std::to_string(width) + " " +
          std::to_string(height) + "\">\n" + elements + "\n</svg>\n";
 }
 
