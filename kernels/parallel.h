@@ -10,9 +10,10 @@
 
 namespace drumhead::kernels {
 
-/// Nodes × passes under which a loop is run by the calling thread alone (measured: two threads break even at
-/// about 10 microseconds of work).
-constexpr std::ptrdiff_t kSerialNodes = 20000;
+/// Nodes × passes under which a loop is run by the calling thread alone: about 0.2 ms of work. Waking threads
+/// costs some microseconds on an idle machine, but a time slice on a loaded one, where libgomp's spinning
+/// threads wait for one another.
+constexpr std::ptrdiff_t kSerialNodes = 200000;
 
 inline int threads_for(std::ptrdiff_t nodes) {
   return nodes < kSerialNodes || omp_in_parallel() ? 1 : omp_get_max_threads();
