@@ -178,8 +178,7 @@ void set_links(CutCells& cuts, std::vector<std::array<int, 2>>& pairs) {
   const std::size_t given = pairs.size();
   for (std::size_t n = 0; n < given; ++n) pairs.push_back({pairs[n][1], pairs[n][0]});
   std::ranges::sort(pairs);
-  const auto repeated = std::ranges::unique(pairs);
-  pairs.erase(repeated.begin(), repeated.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());  // clang 14 has no ranges::unique
   cuts.link_begin.assign(std::size_t(cuts.size()) + 1, 0);
   for (const auto& [k, l] : pairs) {
     ++cuts.link_begin[std::size_t(k) + 1];

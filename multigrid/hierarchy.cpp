@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "hierarchy.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <drumhead/kernels/threads.h>
 #include <drumhead/kernels/transfer.h>
 
 namespace drumhead::multigrid {
@@ -24,7 +23,7 @@ template <class T>
 Hierarchy<T>::Hierarchy(const grid::Lattice& lattice, const grid::Material& material,
                         const grid::CutCells& cuts, const SceneTraits& traits,
                         grid::MemoryMeter& meter)
-    : traits_(traits), scratch_(lattice.nx + 1, omp_get_max_threads()) {
+    : traits_(traits), scratch_(lattice.nx + 1, kernels::thread_limit()) {
   int nx = lattice.nx, ny = lattice.ny;
   grid::CutCells rows = cuts;
   for (T spacing = T(1);; spacing *= T(2)) {

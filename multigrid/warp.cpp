@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/multigrid/warp.h>
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,6 +11,7 @@
 
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/isa.h>
+#include <drumhead/kernels/threads.h>
 
 #include "analysis.h"
 #include "load_path.h"
@@ -37,20 +36,6 @@ constexpr double kSinglePrecision = 1e-3;
 constexpr double kNotableGap = 1.0;
 // The q-jump of the default path and of the preconditioner.
 constexpr double kJump = 0.005;
-
-/// OpenMP's thread number for the duration of a solve.
-class ThreadsInUse {
- public:
-  explicit ThreadsInUse(int threads) : before_(omp_get_max_threads()) {
-    if (threads > 0) omp_set_num_threads(threads);
-  }
-  ~ThreadsInUse() { omp_set_num_threads(before_); }
-  ThreadsInUse(const ThreadsInUse&) = delete;
-  ThreadsInUse& operator=(const ThreadsInUse&) = delete;
-
- private:
-  int before_;
-};
 
 void check(const WarpProblem& problem, const SolverOptions& options) {
   const grid::Lattice& lattice = problem.lattice;
@@ -211,11 +196,11 @@ const char* name(Status status) {
 
 Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   check(problem, options);
-  const ThreadsInUse threads(options.threads);
+  const kernels::ThreadLimit threads(options.threads);
   Solution solution{.lattice = problem.lattice};
   solution.report.exact = options.exact;
   solution.report.isa = kernels::name(kernels::current_isa());
-  solution.report.threads = omp_get_max_threads();
+  solution.report.threads = kernels::thread_limit();
   const double tolerance_cells = options.tolerance_px / problem.lattice.cell_px;
   if (options.exact || (tolerance_cells > 0.0 && tolerance_cells < kSinglePrecision))
     solve_in<double>(problem, options, solution);
