@@ -3,6 +3,7 @@
 // Solution of one Newton system on a level. Cycles alone first: they need no memory besides the level's own.
 // Only where they reduce the residual too little does flexible GCR take over, which minimises the residual over
 // its last few directions (strong stretch, indefinite systems far from a solution, exact curve rows).
+
 #include "cycle.h"
 
 namespace drumhead::multigrid {
@@ -16,8 +17,8 @@ struct Vector {
 
 struct LinearOptions {
   double reduction = 0.1;   ///< of the residual norm
-  int most_cycles = 20;
-  int directions = 2;       ///< stored pairs of GCR, each 6 values a node
+  int most_cycles = 30;
+  int directions = 20;      ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
 };
 

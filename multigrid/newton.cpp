@@ -188,10 +188,9 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const double norm = force_norm(pressure);
     LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
     if (linear.residual > kStagnated && clamp.theta > 1.0) {
-      // Indefinite far from a solution: the positive definite Hessian always makes progress.
-      clamp.most = std::max(1.0, clamp.theta / kGrow);
-      clamp.theta = 1.0;
-      set_clamp(1.0);
+      // Indefinite far from a solution: a smaller theta is closer to the positive definite Hessian.
+      clamp.theta = clamp.most = std::max(1.0, clamp.theta / (kGrow * kGrow));
+      set_clamp(clamp.theta);
       set_force(pressure);
       const int wasted = linear.cycles;
       linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
@@ -221,14 +220,16 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       report.status = Status::stalled;
       return report;
     }
-    if (n > 0 && full && report.steps[std::size_t(n) - 1].step == 1.0)
+    // A step with a smaller theta than the one before converges more slowly: no contraction is seen from it.
+    const bool comparable = n == 0 || step.theta >= report.steps[std::size_t(n) - 1].theta;
+    if (n > 0 && full && comparable && report.steps[std::size_t(n) - 1].step == 1.0)
       report.rate = std::min(0.9, step.dx_rms_px / report.steps[std::size_t(n) - 1].dx_rms_px);
     const double left = std::max(report.rate, linear.residual) / (1.0 - std::min(0.9, report.rate));
     report.error_rms = left * step.dx_rms_px;
     report.error_max = left * step.dx_max_px;
     const double wanted =
         std::max(options.tolerance_rms, options.share_of_discretisation * 0.5 * report.change_rms);
-    if (full && report.error_rms <= wanted &&
+    if (full && comparable && report.error_rms <= wanted &&
         (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max)) {
       report.status = Status::converged;
       return report;
