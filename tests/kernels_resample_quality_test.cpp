@@ -46,7 +46,8 @@ double supersampled(const Field& source, const std::function<Position(Position)>
                     int b) {
   double sum = 0.0;
   for (int k = 0; k < 256; ++k) {
-    sum += source(inverse({a + (k % 16 + 0.5) / 16.0, b + (k / 16 + 0.5) / 16.0}));
+    const int column = k % 16, row = k / 16;
+    sum += source(inverse({a + (column + 0.5) / 16.0, b + (row + 0.5) / 16.0}));
   }
   return sum / 256.0;
 }

@@ -233,7 +233,8 @@ void add_preimages(const WarpedLattice& lattice, int i, int j, Position x,
   };
   const Position p = node(0, 0), q = node(1, 0), r = node(0, 1), w = node(1, 1);
   for (int start = 0; start < 25; ++start) {
-    double s = 0.25 * (start % 5), t = 0.25 * (start / 5), J = 0.0, miss = 1.0;
+    const int column = start % 5, row = start / 5;
+    double s = 0.25 * column, t = 0.25 * row, J = 0.0, miss = 1.0;
     for (int step = 0; step < 30; ++step) {
       const double fx =
           (1 - s) * (1 - t) * p.x + s * (1 - t) * q.x + (1 - s) * t * r.x + s * t * w.x;
