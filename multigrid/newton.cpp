@@ -180,7 +180,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   const bool pressure = bool(level_.pressure);
   const int top = hierarchy_.index_of(level_);
   report.status = Status::limit;
-  int creeping = 0;
+  int creeping = 0, settled = 0;
+  bool trouble = false;
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
@@ -229,8 +230,12 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     report.error_max = left * step.dx_max_px;
     const double wanted =
         std::max(options.tolerance_rms, options.share_of_discretisation * 0.5 * report.change_rms);
-    if (full && comparable && report.error_rms <= wanted &&
-        (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max)) {
+    // Where a step was shortened or theta lowered, one small step may be chance: two in a row are asked for.
+    trouble = trouble || !full || !comparable;
+    const bool small = full && comparable && report.error_rms <= wanted &&
+                       (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max);
+    settled = small ? settled + 1 : 0;
+    if (settled >= (trouble ? 2 : 1)) {
       report.status = Status::converged;
       return report;
     }
