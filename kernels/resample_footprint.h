@@ -12,7 +12,8 @@ namespace drumhead::kernels {
 
 /// Sixteen times Catmull–Rom, support [−2, 2], as truncated powers of the distances to ±2 and ±1:
 /// c = p² (p−1)/2 + r² (1−2r). z + |z| is 2 max(z, 0); written so, the compiler sees no branch and
-/// vectorises without leave to reorder floating-point traps (std::max: 4 times slower).
+/// vectorises without leave to reorder floating-point traps (with std::max a footprint takes 1.7
+/// times as long).
 inline float catmull_rom_16(float x) {
   const float d = std::abs(x), near_two = 2.0f - d, near_one = 1.0f - d;
   const float p = near_two + std::abs(near_two), r = near_one + std::abs(near_one);  // twice p, r

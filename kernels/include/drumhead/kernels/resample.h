@@ -89,8 +89,8 @@ enum class Border {
 struct ResampleOptions {
   Border border = Border::clamp;
   /// Least footprint radius σ2, in pixels of the pyramid level that is sampled, 1…16. Twice as much
-  /// takes four times the taps where the warp compresses by more than 2 detail, and leaves half the
-  /// (small) error of the pyramid.
+  /// takes up to four times the taps where the warp compresses by more than 2 detail. Error of the
+  /// pyramid on a zone plate, PSNR: 1: 30…42 dB, 2: 53…67 dB, 4: 60…71 dB.
   double detail = 2.0;
   /// Greatest σ1/σ2 of a footprint, 1…64; σ2 is enlarged (blur across, never aliasing along) beyond
   /// it.
