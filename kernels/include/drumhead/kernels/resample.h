@@ -20,12 +20,12 @@
 // 1.25 on, a line between. So there is one formula, continuous in the Jacobian: plain bicubic
 // interpolation where nothing is compressed, under rotation too, and the output pixel's own cubic
 // prefilter where it is, anisotropic in between. Catmull–Rom instead of a Gaussian ellipse because
-// it interpolates, keeps twice the contrast at half the output's band limit and sums to 1. It
-// overshoots a step by at most 7.5 % per direction; nothing is clamped, and values below 0 or above
-// the picture's range (alpha too) are for the writer to clamp. Beyond f(σ2) = 2 detail the taps
-// come from a pyramid, blended between levels: a pixel costs at most about 64 detail² anisotropy
-// taps. Where the displacement is zero, or the same whole number of pixels, the source pixel is
-// returned bit for bit.
+// it interpolates, sums to 1 and is sharper (0.94 of the contrast at half the output's band limit;
+// a Gaussian of σ = ½ pixel, 0.73). It overshoots a step by at most 7.5 % per direction; nothing
+// is clamped, and values below 0 or above the picture's range (alpha too) are for the writer to
+// clamp. Beyond f(σ2) = 2 detail the taps come from a pyramid, blended between levels: a pixel
+// costs at most about 64 detail² anisotropy taps. Where the displacement is zero, or the same
+// whole number of pixels, the source pixel is returned bit for bit.
 //
 // Channels are interleaved and filtered alike: premultiply alpha and linearise before, undo it
 // afterwards.
