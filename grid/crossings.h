@@ -10,8 +10,8 @@ namespace drumhead::grid {
 /// Distance in cells under which a point counts as lying on a line of the lattice.
 constexpr double kSnap = 1e-9;
 
-/// Parameters in (0, 1), ascending, at which a curve in cell units meets an integer x or y. Points within
-/// 1e-9 of a line count as on it and yield no crossing on their own.
+/// Parameters in (0, 1), ascending, at which a curve in cell units meets an integer x or y. Points
+/// within 1e-9 of a line count as on it and yield no crossing on their own.
 void find_crossings(const CubicBezier& curve, std::vector<double>& out);
 
 }  // namespace drumhead::grid

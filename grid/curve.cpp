@@ -19,7 +19,8 @@ Point mix(Point a, Point b, double t) { return (1.0 - t) * a + t * b; }
 
 double gauss_length(const CubicBezier& curve, double t0, double t1) {
   double sum = 0.0;
-  for_gauss_points(t0, t1, [&](double t, double weight) { sum += weight * length(curve.derivative(t)); });
+  for_gauss_points(t0, t1,
+                   [&](double t, double weight) { sum += weight * length(curve.derivative(t)); });
   return sum;
 }
 
@@ -102,7 +103,8 @@ void check_chain(const std::string& name, const char* side, const std::vector<Cu
   for (const CubicBezier& segment : chain)
     for (const Point& p : segment.control)
       if (!std::isfinite(p.x) || !std::isfinite(p.y))
-        throw std::invalid_argument("curve '" + name + "': the " + side + " has a point that is not finite");
+        throw std::invalid_argument("curve '" + name + "': the " + side +
+                                    " has a point that is not finite");
   if (!(arc_length(chain) > 0.0))
     throw std::invalid_argument("curve '" + name + "': the " + side + " has no length");
 }
@@ -133,7 +135,9 @@ CubicBezier CubicBezier::piece(double t0, double t1) const {
   return {{blossom(t0, t0, t0), blossom(t0, t0, t1), blossom(t0, t1, t1), blossom(t1, t1, t1)}};
 }
 
-CubicBezier straight(Point a, Point b) { return {{a, mix(a, b, 1.0 / 3.0), mix(a, b, 2.0 / 3.0), b}}; }
+CubicBezier straight(Point a, Point b) {
+  return {{a, mix(a, b, 1.0 / 3.0), mix(a, b, 2.0 / 3.0), b}};
+}
 
 double arc_length(const CubicBezier& curve) { return length_between(curve, 0.0, 1.0); }
 
@@ -148,7 +152,8 @@ std::vector<SegmentPair> matched(const CurvePair& pair) {
   check_chain(pair.name, "target", pair.target);
   std::vector<SegmentPair> out;
   if (pair.source.size() == pair.target.size()) {
-    for (std::size_t n = 0; n < pair.source.size(); ++n) out.push_back({pair.source[n], pair.target[n]});
+    for (std::size_t n = 0; n < pair.source.size(); ++n)
+      out.push_back({pair.source[n], pair.target[n]});
     return out;
   }
   const MeasuredChain source(pair.source), target(pair.target);

@@ -12,9 +12,9 @@
 namespace drumhead::grid {
 namespace {
 
-constexpr double kShortestStay = 1e-3;     // cells
-constexpr double kLeastInterior = 0.02;    // of a row's weight
-constexpr double kQuadrature = 1e-10;      // relative
+constexpr double kShortestStay = 1e-3;   // cells
+constexpr double kLeastInterior = 0.02;  // of a row's weight
+constexpr double kQuadrature = 1e-10;    // relative
 
 /// ∫ over an arc inside one cell of 1, the bilinear weights and target − source.
 struct Integral {
@@ -55,7 +55,8 @@ Integral gauss(const SegmentPair& pair, Cell cell, double t0, double t1) {
   return sum;
 }
 
-/// Halves the arc until the eight-point rule has converged; a straight arc of constant speed has at once.
+/// Halves the arc until the eight-point rule has converged; a straight arc of constant speed has at
+/// once.
 Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, const Integral& whole,
                    int depth) {
   const double middle = 0.5 * (t0 + t1);
@@ -85,16 +86,16 @@ int cell_index(double x, int n) {
 [[noreturn]] void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice) {
   const Point px = lattice.origin_px + lattice.cell_px * cells;
   const Point end = lattice.rest_px(lattice.nx, lattice.ny);
-  auto text = [](Point p) {
-    return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")";
-  };
-  throw std::invalid_argument("curve '" + curve.name + "': the source leaves the lattice at " + text(px) +
-                              " px; it reaches from " + text(lattice.origin_px) + " to " + text(end));
+  auto text = [](Point p) { return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")"; };
+  throw std::invalid_argument("curve '" + curve.name + "': the source leaves the lattice at " +
+                              text(px) + " px; it reaches from " + text(lattice.origin_px) +
+                              " to " + text(end));
 }
 
 class Cutter {
  public:
-  Cutter(const Lattice& lattice, double most_weight) : lattice_(lattice), most_weight_(most_weight) {}
+  Cutter(const Lattice& lattice, double most_weight)
+      : lattice_(lattice), most_weight_(most_weight) {}
 
   void add(const CurvePair& curve) {
     std::vector<SegmentPair> segments = matched(curve);
@@ -178,13 +179,15 @@ void set_links(CutCells& cuts, std::vector<std::array<int, 2>>& pairs) {
   const std::size_t given = pairs.size();
   for (std::size_t n = 0; n < given; ++n) pairs.push_back({pairs[n][1], pairs[n][0]});
   std::ranges::sort(pairs);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());  // clang 14 has no ranges::unique
+  pairs.erase(std::unique(pairs.begin(), pairs.end()),
+              pairs.end());  // clang 14 has no ranges::unique
   cuts.link_begin.assign(std::size_t(cuts.size()) + 1, 0);
   for (const auto& [k, l] : pairs) {
     ++cuts.link_begin[std::size_t(k) + 1];
     cuts.link.push_back(l);
   }
-  for (std::size_t k = 0; k < std::size_t(cuts.size()); ++k) cuts.link_begin[k + 1] += cuts.link_begin[k];
+  for (std::size_t k = 0; k < std::size_t(cuts.size()); ++k)
+    cuts.link_begin[k + 1] += cuts.link_begin[k];
 }
 
 CutCells Cutter::finish() {
@@ -197,7 +200,8 @@ CutCells Cutter::finish() {
     Integral sum;
     for (; n < stays_.size() && stays_[n].cell == cell; ++n) sum.add(stays_[n].integral);
     for (double& w : sum.weight) w /= sum.length;
-    if (keep_interior(sum.weight, cell.i, cell.j, lattice_.nx, lattice_.ny) < kLeastInterior) continue;
+    if (keep_interior(sum.weight, cell.i, cell.j, lattice_.nx, lattice_.ny) < kLeastInterior)
+      continue;
     cuts.column.push_back(cell.i);
     cuts.weight.push_back(sum.weight);
     cuts.length.push_back(sum.length);
@@ -206,7 +210,8 @@ CutCells Cutter::finish() {
     ++cuts.row_begin[std::size_t(cell.j) + 1];
     kept.push_back(index(cell));
   }
-  for (std::size_t j = 0; j < std::size_t(lattice_.ny); ++j) cuts.row_begin[j + 1] += cuts.row_begin[j];
+  for (std::size_t j = 0; j < std::size_t(lattice_.ny); ++j)
+    cuts.row_begin[j + 1] += cuts.row_begin[j];
   std::vector<std::array<int, 2>> pairs;
   auto find = [&](std::ptrdiff_t cell) {
     const auto at = std::ranges::lower_bound(kept, cell);
@@ -226,7 +231,8 @@ CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, doubl
   Cutter cutter(lattice, most_weight);
   for (const CurvePair& curve : curves) {
     if (!(curve.weight > 0.0))
-      throw std::invalid_argument("curve '" + curve.name + "': weight = " + std::to_string(curve.weight) +
+      throw std::invalid_argument("curve '" + curve.name +
+                                  "': weight = " + std::to_string(curve.weight) +
                                   ": must be positive (infinity allowed)");
     cutter.add(curve);
   }
@@ -284,7 +290,8 @@ CoarseCuts coarsen(const CutCells& fine, int nx, int ny) {
       ++cuts.row_begin[std::size_t(j) + 1];
     }
   }
-  for (std::size_t j = 0; j < std::size_t(coarse_ny); ++j) cuts.row_begin[j + 1] += cuts.row_begin[j];
+  for (std::size_t j = 0; j < std::size_t(coarse_ny); ++j)
+    cuts.row_begin[j + 1] += cuts.row_begin[j];
   std::vector<std::array<int, 2>> pairs;
   for (std::size_t k = 0; k < std::size_t(fine.size()); ++k)
     for (int l = fine.link_begin[k]; l < fine.link_begin[k + 1]; ++l) {

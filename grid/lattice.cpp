@@ -14,7 +14,8 @@ constexpr int kMostCells = 16384;
 constexpr double kWhole = 1e-6;
 
 [[noreturn]] void refuse(const char* what, double value, const char* bound) {
-  throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) + ": must be " + bound);
+  throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) + ": must be " +
+                              bound);
 }
 
 /// The power of two whose multiples coarsen well and cost at most a sixteenth more cells.
@@ -29,8 +30,10 @@ int round_up(int n, int step) { return (n + step - 1) / step * step; }
 }  // namespace
 
 Lattice make_lattice(double width_px, double height_px, const LatticeOptions& options) {
-  if (!(width_px > 0.0) || !std::isfinite(width_px)) refuse("width", width_px, "positive and finite");
-  if (!(height_px > 0.0) || !std::isfinite(height_px)) refuse("height", height_px, "positive and finite");
+  if (!(width_px > 0.0) || !std::isfinite(width_px))
+    refuse("width", width_px, "positive and finite");
+  if (!(height_px > 0.0) || !std::isfinite(height_px))
+    refuse("height", height_px, "positive and finite");
   if (!(options.margin >= 0.0) || !std::isfinite(options.margin))
     refuse("margin", options.margin, "at least 0 and finite");
   if (!(options.cell_px >= 0.0) || !std::isfinite(options.cell_px))
@@ -44,7 +47,9 @@ Lattice make_lattice(double width_px, double height_px, const LatticeOptions& op
   const double across = lattice.side_px / lattice.cell_px * (1.0 + 2.0 * options.margin);
   if (across > 2.0 * kMostCells) refuse("cells with the margin", across, "at most 32768");
 
-  auto cells = [&](double px) { return std::max(1, int(std::ceil(px / lattice.cell_px - kWhole))); };
+  auto cells = [&](double px) {
+    return std::max(1, int(std::ceil(px / lattice.cell_px - kWhole)));
+  };
   const int inner_x = cells(width_px), inner_y = cells(height_px);
   const int margin = int(std::ceil(options.margin * lattice.side_px / lattice.cell_px - kWhole));
   lattice.nx = inner_x + 2 * margin;

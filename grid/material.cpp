@@ -21,13 +21,15 @@ void check_size(const char* what, std::size_t size, const Lattice& lattice) {
 
 std::string cell_name(const char* what, std::size_t c, const Lattice& lattice) {
   const std::size_t nx = std::size_t(lattice.nx);
-  return std::string(what) + " of cell (" + std::to_string(c % nx) + ", " + std::to_string(c / nx) + ")";
+  return std::string(what) + " of cell (" + std::to_string(c % nx) + ", " + std::to_string(c / nx) +
+         ")";
 }
 
 }  // namespace
 
 void check(const Material& material, const Lattice& lattice) {
-  if (!(material.mu > 0.0) || !std::isfinite(material.mu)) refuse("mu", material.mu, "positive and finite");
+  if (!(material.mu > 0.0) || !std::isfinite(material.mu))
+    refuse("mu", material.mu, "positive and finite");
   if (!(material.kappa >= 0.0)) refuse("kappa", material.kappa, "at least 0 (infinity allowed)");
   check_size("mu_cells", material.mu_cells.size(), lattice);
   check_size("kappa_cells", material.kappa_cells.size(), lattice);

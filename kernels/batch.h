@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The one place that knows xsimd. A kernel's formula is a generic lambda over a lane type: whole batches of
-// the widest kind first, then the narrower ones, then single numbers, so that a row's remainder never costs
-// more than a few steps. Every operation is element-wise and never contracted: all widths agree bit for bit.
+// The one place that knows xsimd. A kernel's formula is a generic lambda over a lane type: whole
+// batches of the widest kind first, then the narrower ones, then single numbers, so that a row's
+// remainder never costs more than a few steps. Every operation is element-wise and never
+// contracted: all widths agree bit for bit.
 #include <cmath>
 #include <xsimd/xsimd.hpp>
 

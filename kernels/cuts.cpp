@@ -109,12 +109,12 @@ void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g
   }
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                                                   \
-  template Pair<T> cut_compliance(const Cuts<T>&, const T*, int);                                 \
-  template void add_curve_force(const Cuts<T>&, const T*, T, const Unknowns<T>&);                 \
-  template void apply_cuts(const Cuts<T>&, const Unknowns<const T>&, const T*, T*);               \
-  template void cuts_residual(const Cuts<T>&, const T*, const Unknowns<const T>&, const T*, T*);  \
-  template void relax_cuts_row(const Membrane<T>&, const Cuts<T>&, const T*, T*,                  \
+#define DRUMHEAD_INSTANTIATE(T)                                                                  \
+  template Pair<T> cut_compliance(const Cuts<T>&, const T*, int);                                \
+  template void add_curve_force(const Cuts<T>&, const T*, T, const Unknowns<T>&);                \
+  template void apply_cuts(const Cuts<T>&, const Unknowns<const T>&, const T*, T*);              \
+  template void cuts_residual(const Cuts<T>&, const T*, const Unknowns<const T>&, const T*, T*); \
+  template void relax_cuts_row(const Membrane<T>&, const Cuts<T>&, const T*, T*,                 \
                                const Unknowns<T>&, const Unknowns<T>&, bool, int);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

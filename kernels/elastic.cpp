@@ -41,9 +41,8 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   const KernelTable<T>& kernels = table<T>();
   const int rows = m.ux.rows - 1;
   std::vector<EnergySums> of_row(static_cast<std::size_t>(rows));
-  for_rows(0, rows, m.ux.columns, [&](int j) {
-    kernels.energy(m, d, step, bool(d.x), of_row[std::size_t(j)], j);
-  });
+  for_rows(0, rows, m.ux.columns,
+           [&](int j) { kernels.energy(m, d, step, bool(d.x), of_row[std::size_t(j)], j); });
   EnergySums sums;
   for (const EnergySums& row : of_row) {
     sums.elastic += row.elastic;

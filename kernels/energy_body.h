@@ -7,10 +7,11 @@
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
-/// mu/4 Σ |edge|² of a cell (Eq. 6) at x̂ + t d for one component; hx, hy: rest lengths of its edges.
+/// mu/4 Σ |edge|² of a cell (Eq. 6) at x̂ + t d for one component; hx, hy: rest lengths of its
+/// edges.
 template <class L, class B, class T>
-B edge_squares(L lane, B, const Corners<const T>& u, const Corners<const T>& d, B t, bool moved, B hx,
-               B hy, int k) {
+B edge_squares(L lane, B, const Corners<const T>& u, const Corners<const T>& d, B t, bool moved,
+               B hx, B hy, int k) {
   B a00 = lane.load(u.n00 + k), a10 = lane.load(u.n10 + k), a01 = lane.load(u.n01 + k),
     a11 = lane.load(u.n11 + k);
   if (moved) {
@@ -24,10 +25,11 @@ B edge_squares(L lane, B, const Corners<const T>& u, const Corners<const T>& d, 
   return (bottom * bottom + top * top) + (left * left + right * right);
 }
 
-/// Adds row j's elastic energy, primal volume energy, volume merit and number of inverted cells to sums.
+/// Adds row j's elastic energy, primal volume energy, volume merit and number of inverted cells to
+/// sums.
 template <class T>
-void energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step, bool moved, EnergySums& sums,
-                int j) {
+void energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step, bool moved,
+                EnergySums& sums, int j) {
   constexpr int kChunk = 256;
   T elastic[kChunk], volume[kChunk], merit[kChunk], inverted[kChunk];
   Sixteen total[4];

@@ -32,7 +32,8 @@ Choice choose() {
   const Isa best = available.back();
   const char* wanted = std::getenv("DRUMHEAD_ISA");
   if (!wanted || !*wanted) return {best, {}};
-  const auto known = std::ranges::find(kAll, std::string_view(wanted), [](Isa isa) { return name(isa); });
+  const auto known =
+      std::ranges::find(kAll, std::string_view(wanted), [](Isa isa) { return name(isa); });
   if (known == kAll.end())
     return {best, "DRUMHEAD_ISA=" + std::string(wanted) +
                       ": not one of scalar, sse2, avx2, avx512; using " + std::string(name(best))};

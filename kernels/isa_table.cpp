@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiled once per instruction set, with DRUMHEAD_ISA_NAMESPACE and DRUMHEAD_ISA_LEVEL set by the build:
-// 0 scalar (auto-vectoriser off), 1 SSE2, 2 AVX2, 3 AVX-512.
+// Compiled once per instruction set, with DRUMHEAD_ISA_NAMESPACE and DRUMHEAD_ISA_LEVEL set by the
+// build: 0 scalar (auto-vectoriser off), 1 SSE2, 2 AVX2, 3 AVX-512.
 #include "energy_body.h"
 #include "kernel_table.h"
 #include "reduce_body.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The row kernels of one instruction set. isa_table.cpp fills one table per instruction set and number type;
-// the public functions call through the table that was chosen for this processor.
+// The row kernels of one instruction set. isa_table.cpp fills one table per instruction set and
+// number type; the public functions call through the table that was chosen for this processor.
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/views.h>
 
@@ -14,16 +14,20 @@ struct KernelTable {
   using Row = SplitRow<T>;
   using ConstRow = SplitRow<const T>;
 
-  void (*apply_nodes)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, Row, int j);
+  void (*apply_nodes)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, Row,
+                      int j);
   void (*apply_cells)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, int j);
-  void (*residual_nodes)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, Row, int j);
-  void (*residual_cells)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, int j);
+  void (*residual_nodes)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, Row,
+                         int j);
+  void (*residual_cells)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row,
+                         int j);
   void (*force_nodes)(const Membrane<T>&, const Fields& out, int j);
   void (*force_cells)(const Membrane<T>&, const Fields& out, int j);
   void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved, EnergySums&, int j);
 
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
-  void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity, int j);
+  void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
+                       int j);
 
   void (*prolong_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
   void (*add_prolonged_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
@@ -46,8 +50,8 @@ struct KernelTable {
 template <class T>
 const KernelTable<T>& table();
 
-#define DRUMHEAD_DECLARE_TABLES(isa) \
-  namespace isa {                    \
+#define DRUMHEAD_DECLARE_TABLES(isa)             \
+  namespace isa {                                \
   extern const KernelTable<float> float_table;   \
   extern const KernelTable<double> double_table; \
   }

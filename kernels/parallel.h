@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The only place that knows threads. Rows are handed out in contiguous chunks; what a row computes never
-// depends on the chunk it is in, so results are bit-equal for any number of threads. Below kSerialNodes the
-// loop runs serially: waking threads costs more than the work.
+// The only place that knows threads. Rows are handed out in contiguous chunks; what a row computes
+// never depends on the chunk it is in, so results are bit-equal for any number of threads. Below
+// kSerialNodes the loop runs serially: waking threads costs more than the work.
 #include <omp.h>
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace drumhead::kernels {
 
-/// Nodes × passes under which a loop is run by the calling thread alone: about 0.2 ms of work. Waking threads
-/// costs some microseconds on an idle machine, but a time slice on a loaded one, where libgomp's spinning
-/// threads wait for one another.
+/// Nodes × passes under which a loop is run by the calling thread alone: about 0.2 ms of work.
+/// Waking threads costs some microseconds on an idle machine, but a time slice on a loaded one,
+/// where libgomp's spinning threads wait for one another.
 constexpr std::ptrdiff_t kSerialNodes = 200000;
 
 inline int threads_for(std::ptrdiff_t nodes) {
@@ -37,10 +37,11 @@ void for_rows(int begin, int end, int columns, F&& body) {
   for_rows_on_threads(begin, end, columns, [&](int j, int) { body(j); });
 }
 
-/// Several sweeps over the same rows in one skewed pass, so that a row is still in cache when the next sweep
-/// wants it. stage(s, j, thread) runs sweep s on row j and may touch rows j−1…j+1 only; it is called when
-/// sweep s−1 is done up to row j+2, which keeps any two sweeps two rows apart: the result is that of whole
-/// sweeps one after the other. Threads first do a trapezoid each, then the wedges left between them.
+/// Several sweeps over the same rows in one skewed pass, so that a row is still in cache when the
+/// next sweep wants it. stage(s, j, thread) runs sweep s on row j and may touch rows j−1…j+1 only;
+/// it is called when sweep s−1 is done up to row j+2, which keeps any two sweeps two rows apart:
+/// the result is that of whole sweeps one after the other. Threads first do a trapezoid each, then
+/// the wedges left between them.
 template <class F>
 void skewed_sweeps(int rows, int stages, int columns, F&& stage) {
   constexpr int kLag = 2;

@@ -49,11 +49,11 @@ void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y) {
   combine(a, x.p, b, y.p);
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                             \
-  template double dot(const Plane<const T>&, const Plane<const T>&);        \
-  template double dot(const Unknowns<const T>&, const Unknowns<const T>&);  \
-  template double largest(const Plane<const T>&);                           \
-  template void combine(T, const Plane<const T>&, T, const Plane<T>&);      \
+#define DRUMHEAD_INSTANTIATE(T)                                            \
+  template double dot(const Plane<const T>&, const Plane<const T>&);       \
+  template double dot(const Unknowns<const T>&, const Unknowns<const T>&); \
+  template double largest(const Plane<const T>&);                          \
+  template void combine(T, const Plane<const T>&, T, const Plane<T>&);     \
   template void combine(T, const Unknowns<const T>&, T, const Unknowns<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

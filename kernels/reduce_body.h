@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Row sums and vector updates over whole fields.
+#include <drumhead/kernels/views.h>
 #include "batch.h"
 #include "sums.h"
-#include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 

@@ -36,16 +36,19 @@ void clear_row(const Plane<T>& plane, int j) {
     std::fill_n(plane.half(j, parity), half_count(plane.columns, parity), T(0));
 }
 
-/// Residual row j of a level into buffers that served other levels: nodes on the fixed boundary get 0.
+/// Residual row j of a level into buffers that served other levels: nodes on the fixed boundary get
+/// 0.
 template <class T>
-void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane, const Unknowns<const T>& f,
-                  const Unknowns<const T>& d, const SplitRow<T>& x, const SplitRow<T>& y, int j) {
+void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
+                  const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& x,
+                  const SplitRow<T>& y, int j) {
   kernels.residual_nodes(membrane, &f, d, x, y, j);
   const int last = d.x.columns - 1;
   for (const SplitRow<T>& row : {x, y}) row.half[0][0] = row.half[last & 1][last >> 1] = T(0);
 }
 
-/// Fills coarse rows from the residual of a level, called with ascending rows of each thread's chunk.
+/// Fills coarse rows from the residual of a level, called with ascending rows of each thread's
+/// chunk.
 template <class T>
 class Restriction {
  public:
@@ -109,7 +112,7 @@ class Restriction {
 enum class Sweep { clear, prolong, nodes, volume, cuts, nothing, restriction };
 struct Stage {
   Sweep sweep;
-  int colour = 0;        ///< of nodes, or parity of the cell rows
+  int colour = 0;  ///< of nodes, or parity of the cell rows
   bool reverse = false;
 };
 
@@ -144,8 +147,8 @@ StageList list_stages(bool clear, bool prolong, bool volume, bool cuts, bool res
 }  // namespace
 
 template <class T>
-void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknowns<const T>* coarse_d,
-           const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
+void relax(const LevelSystem<T>& level, const RelaxStages& stages,
+           const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
   const KernelTable<T>& kernels = table<T>();
   const Unknowns<T>& d = level.d;
   const Unknowns<const T> f = level.f;
@@ -180,10 +183,14 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknown
         break;
       case Sweep::cuts:
         if ((j & 1) == stage.colour)
-          relax_cuts_row(level.membrane, level.cuts, level.fq, level.dq, d, level.f, stage.reverse, j);
+          relax_cuts_row(level.membrane, level.cuts, level.fq, level.dq, d, level.f, stage.reverse,
+                         j);
         break;
-      case Sweep::nothing: break;
-      case Sweep::restriction: restriction(j, thread); break;
+      case Sweep::nothing:
+        break;
+      case Sweep::restriction:
+        restriction(j, thread);
+        break;
     }
   });
 }
@@ -193,7 +200,8 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   const KernelTable<T>& kernels = table<T>();
   const Unknowns<const T> d = level.d, f = level.f;
   const int rows = d.x.rows - 1;
-  const double volume_weight = 1.0 / (double(level.membrane.spacing) * double(level.membrane.spacing));
+  const double volume_weight =
+      1.0 / (double(level.membrane.spacing) * double(level.membrane.spacing));
   scratch.forget();
   std::vector<double> of_row(static_cast<std::size_t>(rows));
   for_rows_on_threads(0, rows, d.x.columns, [&](int j, int thread) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of the relaxation: red-black Gauss–Seidel on x̂ and coloured, D-weighted Kaczmarz on the volume rows.
+// Rows of the relaxation: red-black Gauss–Seidel on x̂ and coloured, D-weighted Kaczmarz on the
+// volume rows.
 #include "elastic_body.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
-/// Nodes of row j with i + j + colour even: both components of d += (f − H d)/K_ii. The components couple
-/// only across colours, so updating them together is Gauss–Seidel in the two colours.
+/// Nodes of row j with i + j + colour even: both components of d += (f − H d)/K_ii. The components
+/// couple only across colours, so updating them together is Gauss–Seidel in the two colours.
 template <class T>
-void relax_nodes_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d, int colour,
-                     int j) {
+void relax_nodes_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d,
+                     int colour, int j) {
   with_scene(m, [&](auto pressure, auto mu_cells) {
     const int parity = (j + colour) & 1;
     const NodeStencil<T, pressure.value, mu_cells.value> stencil(m, d, j, parity);
@@ -65,8 +66,8 @@ void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T
 
 /// Volume rows of the cells of columns 2k + parity in row j; they share no node.
 template <class T>
-void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d, int parity,
-                      int j) {
+void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d,
+                      int parity, int j) {
   const CellStencil<T> stencil(m, j, parity);
   const Corners<T> x(d.x, j, parity), y(d.y, j, parity);
   const CellCompliance<T> compliance(m, j, parity);
@@ -78,8 +79,7 @@ void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f, const Un
     const Corners<const T> inverse(m.inverse_diagonal, j, parity);
     for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
       using B = decltype(zero);
-      relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k),
-                   B(floor),
+      relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k), B(floor),
                    {lane.load(inverse.n00 + k), lane.load(inverse.n10 + k),
                     lane.load(inverse.n01 + k), lane.load(inverse.n11 + k)},
                    k);

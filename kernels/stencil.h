@@ -6,8 +6,9 @@
 // A J* = ½ d1 × d2, d1 = x̂11 − x̂00, d2 = x̂01 − x̂10 (Eq. 7), the derivative of Σ P A J* at a node is
 //   x: ½ [P_sw (ŷ_W − ŷ_S) + P_se (ŷ_S − ŷ_E) + P_ne (ŷ_E − ŷ_N) + P_nw (ŷ_N − ŷ_W)]
 //   y: minus the same with x̂.
-// It is linear in P and in x̂: with (P_H, d) it is the product G d, with (dP, x̂) the product Bᵀ dP, with
-// (P, x̂) the volume force. Differences of displacements keep their digits where positions would not.
+// It is linear in P and in x̂: with (P_H, d) it is the product G d, with (dP, x̂) the product Bᵀ dP,
+// with (P, x̂) the volume force. Differences of displacements keep their digits where positions
+// would not.
 #include <drumhead/kernels/views.h>
 
 #include "batch.h"
@@ -51,7 +52,8 @@ struct Corners {
         n11(f.half(j + 1, 1 - parity) + parity) {}
 };
 
-/// Values of a field at a node's four neighbours as differences along the diagonals of its four cells.
+/// Values of a field at a node's four neighbours as differences along the diagonals of its four
+/// cells.
 template <class B>
 struct Diagonals {
   B sw, se, ne, nw;  // W − S, S − E, E − N, N − W
@@ -158,8 +160,8 @@ struct NodeStencil {
   }
 };
 
-/// A J* − A and B at the cells of one parity in row j: gradients g of A J* with respect to the corners are
-/// (±½ d2y, ∓½ d2x) at 11, 00 and (∓½ d1y, ±½ d1x) at 01, 10.
+/// A J* − A and B at the cells of one parity in row j: gradients g of A J* with respect to the
+/// corners are (±½ d2y, ∓½ d2x) at 11, 00 and (∓½ d1y, ±½ d1x) at 01, 10.
 template <class T>
 struct CellStencil {
   T spacing;
@@ -181,8 +183,8 @@ struct CellStencil {
 
 /// δ(d1), δ(d2) of a correction at a cell's corners.
 template <class L, class B, class T>
-void correction_diagonals(L lane, B, const Corners<T>& x, const Corners<T>& y, int k, B& d1x, B& d1y,
-                          B& d2x, B& d2y) {
+void correction_diagonals(L lane, B, const Corners<T>& x, const Corners<T>& y, int k, B& d1x,
+                          B& d1y, B& d2x, B& d2y) {
   d1x = lane.load(x.n11 + k) - lane.load(x.n00 + k);
   d1y = lane.load(y.n11 + k) - lane.load(y.n00 + k);
   d2x = lane.load(x.n01 + k) - lane.load(x.n10 + k);

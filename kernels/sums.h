@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums whose value depends neither on the vector width nor on the number of threads: sixteen double sums a
-// row, element k of a half row into sum k mod 16, added up in a fixed order; rows are added in order.
+// Sums whose value depends neither on the vector width nor on the number of threads: sixteen double
+// sums a row, element k of a half row into sum k mod 16, added up in a fixed order; rows are added
+// in order.
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
 struct Sixteen {

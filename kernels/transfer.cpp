@@ -8,12 +8,14 @@ namespace drumhead::kernels {
 
 template <class T>
 void inject_nodes(const Plane<const T>& fine, const Plane<T>& coarse) {
-  for_rows(1, coarse.rows - 1, coarse.columns, [&](int j) { table<T>().inject_nodes(fine, coarse, j); });
+  for_rows(1, coarse.rows - 1, coarse.columns,
+           [&](int j) { table<T>().inject_nodes(fine, coarse, j); });
 }
 
 template <class T>
 void prolong_nodes(const Plane<const T>& coarse, const Plane<T>& fine) {
-  for_rows(1, fine.rows - 1, fine.columns, [&](int j) { table<T>().prolong_nodes(coarse, fine, j); });
+  for_rows(1, fine.rows - 1, fine.columns,
+           [&](int j) { table<T>().prolong_nodes(coarse, fine, j); });
 }
 
 template <class T>
@@ -28,13 +30,14 @@ void mean_cells(const Plane<const T>& fine, const Plane<T>& coarse) {
 
 template <class T>
 void interpolate_cells(const Plane<const T>& coarse, const Plane<T>& fine) {
-  for_rows(0, fine.rows, fine.columns, [&](int j) { table<T>().interpolate_cells(coarse, fine, j); });
+  for_rows(0, fine.rows, fine.columns,
+           [&](int j) { table<T>().interpolate_cells(coarse, fine, j); });
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                           \
-  template void inject_nodes(const Plane<const T>&, const Plane<T>&);     \
-  template void prolong_nodes(const Plane<const T>&, const Plane<T>&);    \
-  template void mean_cells(const Plane<const T>&, const Plane<T>&);       \
+#define DRUMHEAD_INSTANTIATE(T)                                        \
+  template void inject_nodes(const Plane<const T>&, const Plane<T>&);  \
+  template void prolong_nodes(const Plane<const T>&, const Plane<T>&); \
+  template void mean_cells(const Plane<const T>&, const Plane<T>&);    \
   template void interpolate_cells(const Plane<const T>&, const Plane<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

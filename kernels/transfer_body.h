@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of the transfers between a lattice and its coarser one. Coarse node (I, J) lies on fine node (2I, 2J),
-// coarse cell (I, J) covers fine cells (2I…2I+1, 2J…2J+1), as far as they exist: where the fine count is odd
-// the last coarse cell overhangs the fixed edge. A coarse row is joined into natural column order in a small
-// buffer, where it lines up with both halves of a fine row.
-#include "batch.h"
+// Rows of the transfers between a lattice and its coarser one. Coarse node (I, J) lies on fine node
+// (2I, 2J), coarse cell (I, J) covers fine cells (2I…2I+1, 2J…2J+1), as far as they exist: where
+// the fine count is odd the last coarse cell overhangs the fixed edge. A coarse row is joined into
+// natural column order in a small buffer, where it lines up with both halves of a fine row.
 #include <drumhead/kernels/views.h>
+#include "batch.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
@@ -33,7 +33,8 @@ void split_row(const T* in, int begin, int count, const SplitRow<T>& row) {
   if (count & 1) even[pairs] = in[count - 1];
 }
 
-/// Fine node row j (+)= bilinear interpolation of the coarse nodes; the fixed boundary is left alone.
+/// Fine node row j (+)= bilinear interpolation of the coarse nodes; the fixed boundary is left
+/// alone.
 template <bool kAdd, class T>
 void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
   T natural[kBuffer + 2], upper[kBuffer + 2];
@@ -68,8 +69,9 @@ void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j
   }
 }
 
-/// Coarse node row J = adjoint of the bilinear interpolation of three fine rows 2J−1, 2J, 2J+1; `above` null
-/// where row 2J+1 does not exist or is fixed. Fine values on the fixed boundary must be 0.
+/// Coarse node row J = adjoint of the bilinear interpolation of three fine rows 2J−1, 2J, 2J+1;
+/// `above` null where row 2J+1 does not exist or is fixed. Fine values on the fixed boundary must
+/// be 0.
 template <class T>
 void restrict_nodes_row(const SplitRow<const T>& below, const SplitRow<const T>& middle,
                         const SplitRow<const T>* above, int fine_columns, const Plane<T>& coarse,
@@ -132,10 +134,11 @@ void prolong_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j
   }
 }
 
-/// Coarse cell row J = sum (or mean) of the fine cells it covers; `above` null where row 2J+1 does not exist.
+/// Coarse cell row J = sum (or mean) of the fine cells it covers; `above` null where row 2J+1 does
+/// not exist.
 template <bool kMean, class T>
-void gather_cells_row(const SplitRow<const T>& below, const SplitRow<const T>* above, int fine_columns,
-                      const Plane<T>& coarse, int j) {
+void gather_cells_row(const SplitRow<const T>& below, const SplitRow<const T>* above,
+                      int fine_columns, const Plane<T>& coarse, int j) {
   T natural[kBuffer];
   const T rows = above ? T(2) : T(1);
   for (int begin = 0; begin < coarse.columns; begin += kBuffer) {
@@ -162,9 +165,9 @@ void gather_cells_row(const SplitRow<const T>& below, const SplitRow<const T>* a
   }
 }
 
-/// Fine cell row j = bilinear interpolation between coarse cell centres (weights 9, 3, 3, 1 in 16), constant
-/// beyond the outermost centres. Not the transfer of the cycles: it starts a finer level of the nested
-/// iteration.
+/// Fine cell row j = bilinear interpolation between coarse cell centres (weights 9, 3, 3, 1 in 16),
+/// constant beyond the outermost centres. Not the transfer of the cycles: it starts a finer level
+/// of the nested iteration.
 template <class T>
 void interpolate_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
   T natural[kBuffer + 2], other[kBuffer + 2];
@@ -183,7 +186,8 @@ void interpolate_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, i
     }
     for_lanes<T>(0, count + 2, [&](auto lane, auto zero, int k) {
       using B = decltype(zero);
-      lane.store(B(T(0.75)) * lane.load(natural + k) + B(T(0.25)) * lane.load(other + k), natural + k);
+      lane.store(B(T(0.75)) * lane.load(natural + k) + B(T(0.25)) * lane.load(other + k),
+                 natural + k);
     });
     for (int parity = 0; parity < 2; ++parity) {
       T* out = fine.half(j, parity) + begin;

@@ -18,14 +18,16 @@ grid::Point displacement(const Solution& s, grid::Point px) {
   const double x = at.x - i, y = at.y - j;
   const std::size_t row = std::size_t(s.lattice.nx) + 1, k = std::size_t(j) * row + std::size_t(i);
   auto bilinear = [&](const std::vector<double>& f) {
-    return (1 - y) * ((1 - x) * f[k] + x * f[k + 1]) + y * ((1 - x) * f[k + row] + x * f[k + row + 1]);
+    return (1 - y) * ((1 - x) * f[k] + x * f[k + 1]) +
+           y * ((1 - x) * f[k + row] + x * f[k + row + 1]);
   };
   return {bilinear(s.u_px), bilinear(s.v_px)};
 }
 
 }  // namespace
 
-std::vector<CurveReport> curve_gaps(const Solution& solution, const std::vector<grid::CurvePair>& curves) {
+std::vector<CurveReport> curve_gaps(const Solution& solution,
+                                    const std::vector<grid::CurvePair>& curves) {
   std::vector<CurveReport> reports;
   for (const grid::CurvePair& curve : curves) {
     CurveReport report{.name = curve.name};

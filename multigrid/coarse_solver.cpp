@@ -9,9 +9,11 @@
 namespace drumhead::multigrid {
 namespace {
 
-/// Visits every unknown of a level in a fixed order: interior nodes' x and y, pressures, curve forces.
+/// Visits every unknown of a level in a fixed order: interior nodes' x and y, pressures, curve
+/// forces.
 template <class T, class F>
-void for_unknowns(const kernels::Unknowns<T>& fields, T* q, std::size_t cuts, bool pressure, F&& f) {
+void for_unknowns(const kernels::Unknowns<T>& fields, T* q, std::size_t cuts, bool pressure,
+                  F&& f) {
   for (int j = 1; j + 1 < fields.x.rows; ++j)
     for (int i = 1; i + 1 < fields.x.columns; ++i) {
       f(fields.x.at(i, j));
@@ -68,7 +70,8 @@ void CoarseSolver<T>::factorise(Level<T>& level, bool pressure, T jump) {
   factors_->scale = matrix.cwiseAbs().rowwise().maxCoeff();
   for (double& s : factors_->scale) s = s > 0.0 ? 1.0 / std::sqrt(s) : 1.0;
   matrix = factors_->scale.asDiagonal() * matrix * factors_->scale.asDiagonal();
-  // Null modes (a constant pressure where 1/kappa = 0, dependent curve rows) get a small finite answer.
+  // Null modes (a constant pressure where 1/kappa = 0, dependent curve rows) get a small finite
+  // answer.
   const Eigen::Index volume = pressure ? Eigen::Index(level.nx) * level.ny : 0;
   const Eigen::Index first = n - Eigen::Index(2 * cuts) - volume;
   for (Eigen::Index k = first; k < n; ++k) matrix(k, k) -= 1e-7;

@@ -42,7 +42,8 @@ void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
   if (from_zero) std::ranges::fill(level.dq, T(0));
   if (l + 1 == hierarchy_.size()) {
     bottom_.solve(level);
-    if (l == top_) kernels::add_curve_force(level.cuts.view(T(0)), level.dq.data(), T(1), level.f.view());
+    if (l == top_)
+      kernels::add_curve_force(level.cuts.view(T(0)), level.dq.data(), T(1), level.f.view());
     return;
   }
   const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Multigrid cycles for one Newton system: correction scheme, the relaxation of kernels/relax.h before and
-// after, a dense solution on the bottom level. x̂ is restricted by the adjoint of bilinear interpolation,
-// pressures by sums, curve forces by arc length (unlike Setaluri et al. 2014, section 3.5, which transfers
-// none and relaxes more near the curves instead).
+// Multigrid cycles for one Newton system: correction scheme, the relaxation of kernels/relax.h
+// before and after, a dense solution on the bottom level. x̂ is restricted by the adjoint of
+// bilinear interpolation, pressures by sums, curve forces by arc length (unlike Setaluri et al.
+// 2014, section 3.5, which transfers none and relaxes more near the curves instead).
 #include <limits>
 
 #include "coarse_solver.h"
@@ -16,17 +16,18 @@ enum class CycleKind { v, f };
 template <class T>
 class Cycle {
  public:
-  /// Clamp of the pressure in the cycle's systems: that of the equations, or 1, positive definite, for a
-  /// preconditioner (GCR needs .69 per cycle instead of .91: S4, kappa 100, 32², exact Hessian).
+  /// Clamp of the pressure in the cycle's systems: that of the equations, or 1, positive definite,
+  /// for a preconditioner (GCR needs .69 per cycle instead of .91: S4, kappa 100, 32², exact
+  /// Hessian).
   static constexpr T kAsEquations = std::numeric_limits<T>::infinity();
   static constexpr T kDefinite = T(1);
 
-  /// Prepares the systems of levels `top`…bottom at the state of level `top`; `pressure` false: the harmonic
-  /// system, kappa = 0. `most_clamp`: upper bound of the clamp.
+  /// Prepares the systems of levels `top`…bottom at the state of level `top`; `pressure` false: the
+  /// harmonic system, kappa = 0. `most_clamp`: upper bound of the clamp.
   Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp);
 
-  /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries the curve
-  /// forces of dq afterwards (and must do so before, if not from zero).
+  /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
+  /// the curve forces of dq afterwards (and must do so before, if not from zero).
   void run(CycleKind kind, bool from_zero);
 
   /// The system of level l as the preconditioner sees it (with the jump term inside).

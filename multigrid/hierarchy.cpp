@@ -78,7 +78,8 @@ void Hierarchy<T>::set_diagonal(Level<T>& level, grid::MemoryMeter& meter) {
   const kernels::Plane<T> out = level.inverse_diagonal.view(), mu = level.mu.view();
   for (int j = 1; j < level.ny; ++j)
     for (int i = 1; i < level.nx; ++i)
-      out.at(i, j) = T(1) / ((mu.at(i - 1, j - 1) + mu.at(i, j - 1)) + (mu.at(i - 1, j) + mu.at(i, j)));
+      out.at(i, j) =
+          T(1) / ((mu.at(i - 1, j - 1) + mu.at(i, j - 1)) + (mu.at(i - 1, j) + mu.at(i, j)));
 }
 
 template <class T>

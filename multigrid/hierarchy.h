@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The levels of a scene, finest first, and everything that is handed down them: material (averaged), curve
-// rows (aggregated exactly), state (x̂ injected, P averaged). Operators are rediscretised from these.
+// The levels of a scene, finest first, and everything that is handed down them: material
+// (averaged), curve rows (aggregated exactly), state (x̂ injected, P averaged). Operators are
+// rediscretised from these.
 #include <deque>
 
 #include <drumhead/grid/curve.h>
@@ -14,8 +15,8 @@ template <class T>
 class Hierarchy {
  public:
   /// Builds all levels down to one with at most kBottomCells cells across its longer side.
-  Hierarchy(const grid::Lattice& lattice, const grid::Material& material, const grid::CutCells& cuts,
-            const SceneTraits& traits, grid::MemoryMeter& meter);
+  Hierarchy(const grid::Lattice& lattice, const grid::Material& material,
+            const grid::CutCells& cuts, const SceneTraits& traits, grid::MemoryMeter& meter);
 
   int size() const { return int(levels_.size()); }
   Level<T>& operator[](int l) { return levels_[std::size_t(l)]; }
@@ -32,8 +33,8 @@ class Hierarchy {
 
   /// Hands the state of level `top` and its clamp down to all coarser levels.
   void restrict_state(int top);
-  /// State of level l := interpolation of that of level l + 1: x̂ bilinear, P between cell centres, q by
-  /// arc length.
+  /// State of level l := interpolation of that of level l + 1: x̂ bilinear, P between cell centres,
+  /// q by arc length.
   void prolong_state(int l);
 
  private:

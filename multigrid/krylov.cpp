@@ -25,7 +25,8 @@ class Gcr {
         meter_(meter),
         cycle_(hierarchy, top, pressure, Cycle<T>::kDefinite) {}
 
-  /// Goes on from the level's d, dq, whose right-hand side was f − Wᵀ dq; `start`: norm of that side.
+  /// Goes on from the level's d, dq, whose right-hand side was f − Wᵀ dq; `start`: norm of that
+  /// side.
   LinearReport solve(double start, LinearReport report, const LinearOptions& options);
 
  private:
@@ -59,7 +60,8 @@ void Gcr<T>::apply(const Vector<T>& d, Vector<T>& out) {
   kernels::apply_cuts<T>(cuts, d.fields.view(), d.q.data(), out.q.data());
 }
 
-/// Momentum rows, volume rows (per cell side, so that all rows are of one size on every level), curve rows.
+/// Momentum rows, volume rows (per cell side, so that all rows are of one size on every level),
+/// curve rows.
 template <class T>
 double Gcr<T>::dot(const Vector<T>& a, const Vector<T>& b) const {
   const auto av = a.fields.view(), bv = b.fields.view();
@@ -72,7 +74,8 @@ double Gcr<T>::dot(const Vector<T>& a, const Vector<T>& b) const {
 template <class T>
 void Gcr<T>::combine(double a, const Vector<T>& x, double b, Vector<T>& y) const {
   kernels::combine<T>(T(a), x.fields.view(), T(b), y.fields.view());
-  for (std::size_t k = 0; k < x.q.size(); ++k) y.q[k] = T(a) * x.q[k] + (b == 0.0 ? T(0) : T(b) * y.q[k]);
+  for (std::size_t k = 0; k < x.q.size(); ++k)
+    y.q[k] = T(a) * x.q[k] + (b == 0.0 ? T(0) : T(b) * y.q[k]);
 }
 
 /// One cycle on r, made orthogonal to the stored images; false if it yields no direction.
@@ -172,7 +175,8 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
     }
   }
   if (!(report.residual < 1.0)) {  // nothing gained: start from zero
-    if (same) kernels::add_curve_force<T>(level.cuts.view(T(0)), level.dq.data(), T(-1), level.f.view());
+    if (same)
+      kernels::add_curve_force<T>(level.cuts.view(T(0)), level.dq.data(), T(-1), level.f.view());
     level.d.clear();
     std::ranges::fill(level.dq, T(0));
     report.residual = 1.0;

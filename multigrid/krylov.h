@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Solution of one Newton system on a level. Cycles alone first: they need no memory besides the level's own.
-// Only where they reduce the residual too little does flexible GCR take over, which minimises the residual over
-// its last few directions (strong stretch, indefinite systems far from a solution, exact curve rows).
+// Solution of one Newton system on a level. Cycles alone first: they need no memory besides the
+// level's own. Only where they reduce the residual too little does flexible GCR take over, which
+// minimises the residual over its last few directions (strong stretch, indefinite systems far from
+// a solution, exact curve rows).
 
 #include "cycle.h"
 
@@ -16,20 +17,20 @@ struct Vector {
 };
 
 struct LinearOptions {
-  double reduction = 0.1;   ///< of the residual norm
+  double reduction = 0.1;  ///< of the residual norm
   int most_cycles = 30;
-  int directions = 20;      ///< stored pairs of GCR, 6 values a node each, allocated as they come
+  int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
 };
 
 struct LinearReport {
   int cycles = 0;
-  double residual = 1.0;    ///< relative to the right-hand side
+  double residual = 1.0;  ///< relative to the right-hand side
 };
 
-/// Solves the system of level `top` at its state (`pressure` false: the harmonic system, kappa = 0) for its
-/// right-hand side f, fq of norm `start`, which does not carry curve forces and is lost. The solution is in
-/// d, dq.
+/// Solves the system of level `top` at its state (`pressure` false: the harmonic system, kappa = 0)
+/// for its right-hand side f, fq of norm `start`, which does not carry curve forces and is lost.
+/// The solution is in d, dq.
 template <class T>
 LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, double start,
                           const LinearOptions& options, grid::MemoryMeter& meter);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One level of the hierarchy: its lattice, material, curve rows, state and the linear system of the current
-// Newton step. mu is 1 throughout: pressures, weights and energies are in units of the scene's mu.
+// One level of the hierarchy: its lattice, material, curve rows, state and the linear system of the
+// current Newton step. mu is 1 throughout: pressures, weights and energies are in units of the
+// scene's mu.
 #include <vector>
 
 #include <drumhead/grid/cut_cells.h>
@@ -13,8 +14,8 @@ namespace drumhead::multigrid {
 
 /// What of a scene decides which fields exist and how the rows are softened.
 struct SceneTraits {
-  bool pressure = true;   ///< kappa > 0 somewhere
-  double jump = 0.0;      ///< qs of the equations: 0 for exact rows
+  bool pressure = true;        ///< kappa > 0 somewhere
+  double jump = 0.0;           ///< qs of the equations: 0 for exact rows
   double jump_inside = 0.005;  ///< qs of the preconditioner
 };
 

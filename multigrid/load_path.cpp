@@ -60,7 +60,8 @@ double turning_angle(const grid::CurvePair& curve) {
 
 double largest_turn(const std::vector<grid::CurvePair>& curves) {
   double largest = 0.0;
-  for (const grid::CurvePair& curve : curves) largest = std::max(largest, std::abs(turning_angle(curve)));
+  for (const grid::CurvePair& curve : curves)
+    largest = std::max(largest, std::abs(turning_angle(curve)));
   return largest;
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The way to large rotations: beyond about 100 degrees the harmonic start has collapsed, so the curves are
-// carried to their targets in steps, each turned by a growing share of its own angle (Procrustes) and
-// interpolated linearly for the rest.
+// The way to large rotations: beyond about 100 degrees the harmonic start has collapsed, so the
+// curves are carried to their targets in steps, each turned by a growing share of its own angle
+// (Procrustes) and interpolated linearly for the rest.
 #include <vector>
 
 #include <drumhead/grid/curve.h>
 
 namespace drumhead::multigrid {
 
-/// Angle in radians that best turns source to target (least squares over arc length, about the centroids),
-/// positive clockwise with y down. With turn_degrees ≠ 0 it is the equivalent angle closest to that.
+/// Angle in radians that best turns source to target (least squares over arc length, about the
+/// centroids), positive clockwise with y down. With turn_degrees ≠ 0 it is the equivalent angle
+/// closest to that.
 double turning_angle(const grid::CurvePair& curve);
 
 /// Largest |turning_angle| of the curves.

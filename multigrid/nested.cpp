@@ -22,8 +22,8 @@ constexpr int kStepsPerPathStep = 4;
 constexpr double kShare = 0.1;
 // Exact constraints: no node moves further than this in the last step, in finest cells.
 constexpr double kExactMove = 1e-7;
-// Without the jump a linear system of larger theta costs more cycles than the steps it saves (S2, kappa 100,
-// 32²: 22 s with an exact Hessian, 11 s with 16, 14 s with 8).
+// Without the jump a linear system of larger theta costs more cycles than the steps it saves (S2,
+// kappa 100, 32²: 22 s with an exact Hessian, 11 s with 16, 14 s with 8).
 constexpr double kMostExactTheta = 16.0;
 constexpr std::size_t kSmallNodes = 20000;
 
@@ -42,7 +42,8 @@ int start_level(const Hierarchy<T>& hierarchy, double smallest_feature) {
 template <class T>
 LinearOptions linear_options(const Level<T>& level, bool start) {
   LinearOptions linear;
-  // Small lattices can afford directions, and the states on the way to the first solution need them.
+  // Small lattices can afford directions, and the states on the way to the first solution need
+  // them.
   if (start) {
     linear.directions = level.nodes() < kSmallNodes ? 40 : 10;
     linear.most_cycles = 80;
@@ -50,15 +51,16 @@ LinearOptions linear_options(const Level<T>& level, bool start) {
   return linear;
 }
 
-/// Options of the last steps of exact constraints, from the solution with the jump. Modes of q that the jump
-/// held are nearly free without it: only accurate linear solutions lead on.
+/// Options of the last steps of exact constraints, from the solution with the jump. Modes of q that
+/// the jump held are nearly free without it: only accurate linear solutions lead on.
 template <class T>
 NewtonOptions exact_options(const Level<T>& level) {
   const bool small = level.nodes() < kSmallNodes;
   NewtonOptions options;
   options.most_steps = kStartSteps;
   options.tolerance_rms = options.tolerance_max = kExactMove;
-  options.linear = {.reduction = 1e-4, .most_cycles = small ? 400 : 120, .directions = small ? 200 : 40};
+  options.linear = {
+      .reduction = 1e-4, .most_cycles = small ? 400 : 120, .directions = small ? 200 : 40};
   return options;
 }
 
@@ -127,7 +129,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     auto progress = [&](int step) {
       // Work falls by four per level; the finest level is about three quarters of the whole.
       if (options.progress)
-        options.progress({level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
+        options.progress(
+            {level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
     };
     Newton<T> newton(hierarchy, l, meter);
     newton_options.linear = linear_options(level, l == start);

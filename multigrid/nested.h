@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Nested iteration: the harmonic state and Newton to the end on a small lattice, then a few Newton steps on
-// each finer one, from the interpolated solution of the coarser. What a level changes in that start estimates
-// its discretisation error for free: ½ RMS(u_h − P u_2h) for a first-order method.
+// Nested iteration: the harmonic state and Newton to the end on a small lattice, then a few Newton
+// steps on each finer one, from the interpolated solution of the coarser. What a level changes in
+// that start estimates its discretisation error for free: ½ RMS(u_h − P u_2h) for a first-order
+// method.
 #include <drumhead/multigrid/warp.h>
 
 #include "newton.h"
@@ -18,8 +19,8 @@ struct NestedOptions {
   std::function<void(const Progress&)> progress;
 };
 
-/// Solves on all levels of the hierarchy from zero; fills status, levels and errors of the report (converted to
-/// pixels by cell_px). The state is left in hierarchy[0].
+/// Solves on all levels of the hierarchy from zero; fills status, levels and errors of the report
+/// (converted to pixels by cell_px). The state is left in hierarchy[0].
 template <class T>
 void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
                       grid::MemoryMeter& meter, SolveReport& report);

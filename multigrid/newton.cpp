@@ -104,9 +104,9 @@ double Newton<T>::force_norm(bool pressure) {
   return std::sqrt(sum);
 }
 
-/// A full step that the merit refuses is still right if it brings all equations closer to zero: the merit
-/// counts gaps absolutely, and close to a solution the linear solver may leave a gap that is larger than the
-/// one before, yet negligible.
+/// A full step that the merit refuses is still right if it brings all equations closer to zero: the
+/// merit counts gaps absolutely, and close to a solution the linear solver may leave a gap that is
+/// larger than the one before, yet negligible.
 template <class T>
 bool Newton<T>::full_step_solves(double norm_before) {
   const bool pressure = bool(level_.pressure);
@@ -146,7 +146,8 @@ void Newton<T>::update(double step, bool pressure) {
   const auto d = level_.d.view();
   kernels::combine<T>(T(step), kernels::Plane<const T>(d.x), T(1), level_.ux.view());
   kernels::combine<T>(T(step), kernels::Plane<const T>(d.y), T(1), level_.uy.view());
-  if (pressure) kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
+  if (pressure)
+    kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
 }
 
@@ -161,7 +162,8 @@ LinearReport Newton<T>::harmonic(const LinearOptions& options) {
 
 template <class T>
 bool Newton<T>::finite(const NewtonStep& step) const {
-  return std::isfinite(step.dx_rms_px) && std::isfinite(step.dx_max_px) && std::isfinite(step.residual);
+  return std::isfinite(step.dx_rms_px) && std::isfinite(step.dx_max_px) &&
+         std::isfinite(step.residual);
 }
 
 /// Moves below this are rounding: the state's largest displacement times the precision of T.
@@ -221,7 +223,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       report.status = Status::stalled;
       return report;
     }
-    // A step with a smaller theta than the one before converges more slowly: no contraction is seen from it.
+    // A step with a smaller theta than the one before converges more slowly: no contraction is seen
+    // from it.
     const bool comparable = n == 0 || step.theta >= report.steps[std::size_t(n) - 1].theta;
     if (n > 0 && full && comparable && report.steps[std::size_t(n) - 1].step == 1.0)
       report.rate = std::min(0.9, step.dx_rms_px / report.steps[std::size_t(n) - 1].dx_rms_px);
@@ -230,7 +233,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     report.error_max = left * step.dx_max_px;
     const double wanted =
         std::max(options.tolerance_rms, options.share_of_discretisation * 0.5 * report.change_rms);
-    // Where a step was shortened or theta lowered, one small step may be chance: two in a row are asked for.
+    // Where a step was shortened or theta lowered, one small step may be chance: two in a row are
+    // asked for.
     trouble = trouble || !full || !comparable;
     const bool small = full && comparable && report.error_rms <= wanted &&
                        (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max);
@@ -243,7 +247,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       report.status = Status::stalled;
       return report;
     }
-    clamp.theta = full ? std::min(clamp.theta * kGrow, kExactTheta) : std::max(1.0, clamp.theta / kGrow);
+    clamp.theta =
+        full ? std::min(clamp.theta * kGrow, kExactTheta) : std::max(1.0, clamp.theta / kGrow);
   }
   return report;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Newton's method on one level, globalised by the clamp schedule: the pressure in the Hessian is
-// P_H = clamp(P − median P, ±theta mu). With theta = 1 the elastic block is positive definite; theta grows
-// eightfold with every full step until the Hessian is exact, and shrinks with every shortened one. Plain
-// Newton diverges on two thirds of the hard scenes. The step length is halved on a merit function in which
-// the multipliers are those of the full step.
+// P_H = clamp(P − median P, ±theta mu). With theta = 1 the elastic block is positive definite;
+// theta grows eightfold with every full step until the Hessian is exact, and shrinks with every
+// shortened one. Plain Newton diverges on two thirds of the hard scenes. The step length is halved
+// on a merit function in which the multipliers are those of the full step.
 #include <drumhead/multigrid/warp.h>
 
 #include "krylov.h"
@@ -12,28 +12,29 @@
 namespace drumhead::multigrid {
 
 struct NewtonOptions {
-  double tolerance_rms = 0.0;   ///< stop when the error left is estimated below this, finest cells
-  double tolerance_max = 0.0;   ///< and, if > 0, when no node moved further than this in the last step
-  /// Besides: stop when the error left is under this share of the level's estimated discretisation error,
-  /// half the RMS of all that Newton changed on the level. 0: not a criterion.
+  double tolerance_rms = 0.0;  ///< stop when the error left is estimated below this, finest cells
+  double tolerance_max =
+      0.0;  ///< and, if > 0, when no node moved further than this in the last step
+  /// Besides: stop when the error left is under this share of the level's estimated discretisation
+  /// error, half the RMS of all that Newton changed on the level. 0: not a criterion.
   double share_of_discretisation = 0.0;
   int most_steps = 8;
-  double expected_rate = 0.5;   ///< contraction expected of a step before two have been seen
+  double expected_rate = 0.5;  ///< contraction expected of a step before two have been seen
   LinearOptions linear;
 };
 
 struct NewtonReport {
   Status status = Status::converged;
-  std::vector<NewtonStep> steps;   ///< dx in finest cells here
-  double error_rms = 0.0, error_max = 0.0;      ///< estimated algebraic error left, finest cells
-  double change_rms = 0.0, change_max = 0.0;    ///< all that Newton changed, finest cells
-  double rate = 0.5;                            ///< contraction observed (or handed on)
+  std::vector<NewtonStep> steps;              ///< dx in finest cells here
+  double error_rms = 0.0, error_max = 0.0;    ///< estimated algebraic error left, finest cells
+  double change_rms = 0.0, change_max = 0.0;  ///< all that Newton changed, finest cells
+  double rate = 0.5;                          ///< contraction observed (or handed on)
 };
 
 /// What the clamp schedule remembers from level to level.
 struct ClampSchedule {
   double theta = 1.0;
-  double most = 1e6;   ///< lowered where the linear solver stagnated; above 1e6 the Hessian is exact
+  double most = 1e6;  ///< lowered where the linear solver stagnated; above 1e6 the Hessian is exact
 };
 
 template <class T>

@@ -30,7 +30,8 @@ constexpr double kMostWeight = 1e6;
 constexpr double kMostKappa = 1e4;
 // Beyond this turn of a curve (100 degrees) the harmonic start collapses.
 constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
-// Single precision is good to about a thousandth of a cell; below, and for exact rows, all is double.
+// Single precision is good to about a thousandth of a cell; below, and for exact rows, all is
+// double.
 constexpr double kSinglePrecision = 1e-3;
 // A hard curve that misses its target by more than this many cells deserves a word.
 constexpr double kNotableGap = 1.0;
@@ -49,7 +50,8 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
     throw std::invalid_argument("tolerance = " + std::to_string(options.tolerance_px) +
                                 ": must be at least 0 and finite");
   if (options.threads < 0)
-    throw std::invalid_argument("threads = " + std::to_string(options.threads) + ": must be at least 0");
+    throw std::invalid_argument("threads = " + std::to_string(options.threads) +
+                                ": must be at least 0");
 }
 
 /// The material the default path solves: kappa capped, with a note.
@@ -62,7 +64,8 @@ grid::Material capped(const grid::Material& material, SolveReport& report) {
     kappa = std::min(kappa, float(kMostKappa));
   }
   if (changed)
-    report.notes.push_back("kappa above 1e4 mu was taken as 1e4 mu; exact constraints take it as it is");
+    report.notes.push_back(
+        "kappa above 1e4 mu was taken as 1e4 mu; exact constraints take it as it is");
   return out;
 }
 
@@ -107,7 +110,8 @@ EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts)
   const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), {}, T(0));
   const double area = double(level.nx) * double(level.ny);
   EnergyReport energy{.elastic = sums.elastic / area, .volume = sums.volume / area};
-  // |q|²/(2 d len): the energy of a soft row's spring; the gap that the q-jump opens is not counted.
+  // |q|²/(2 d len): the energy of a soft row's spring; the gap that the q-jump opens is not
+  // counted.
   for (std::size_t k = 0; k < cuts.compliance.size(); ++k) {
     const double x = double(level.q[2 * k]), y = double(level.q[2 * k + 1]);
     energy.constraint += 0.5 * cuts.compliance[k] * (x * x + y * y) / area;
@@ -134,14 +138,11 @@ template <class T>
 void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution& solution) {
   SolveReport& report = solution.report;
   const Clock::time_point start = Clock::now();
-  const double most_weight =
-      options.exact ? std::numeric_limits<double>::infinity() : kMostWeight;
+  const double most_weight = options.exact ? std::numeric_limits<double>::infinity() : kMostWeight;
   const grid::CutCells cuts = grid::cut(problem.curves, problem.lattice, most_weight);
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
-  const SceneTraits traits{.pressure = has_pressure(material),
-                           .jump = kJump,
-                           .jump_inside = kJump};
+  const SceneTraits traits{.pressure = has_pressure(material), .jump = kJump, .jump_inside = kJump};
   grid::MemoryMeter meter;
   Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
   report.lattice_levels = hierarchy.size();
@@ -167,8 +168,9 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }
 
-/// Says which hard curves miss their targets visibly: the rows of a cell hold on average only, curves in one
-/// cell share a row, and a fixed edge or a stay too short for the lattice cannot follow.
+/// Says which hard curves miss their targets visibly: the rows of a cell hold on average only,
+/// curves in one cell share a row, and a fixed edge or a stay too short for the lattice cannot
+/// follow.
 void note_gaps(const WarpProblem& problem, SolveReport& report) {
   for (std::size_t n = 0; n < report.curves.size(); ++n) {
     const CurveReport& curve = report.curves[n];
@@ -185,11 +187,16 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
 
 const char* name(Status status) {
   switch (status) {
-    case Status::converged: return "converged";
-    case Status::stalled: return "stalled";
-    case Status::infeasible: return "infeasible";
-    case Status::limit: return "limit";
-    case Status::not_finite: return "not_finite";
+    case Status::converged:
+      return "converged";
+    case Status::stalled:
+      return "stalled";
+    case Status::infeasible:
+      return "infeasible";
+    case Status::limit:
+      return "limit";
+    case Status::not_finite:
+      return "not_finite";
   }
   return "";
 }

@@ -15,12 +15,10 @@ foreach(name cuts elastic relax)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_kernel_oracle LABEL unit)
 endforeach()
-foreach(name fused isa properties reduce transfer)
+foreach(name fused isa properties reduce threads transfer)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_fields LABEL unit)
 endforeach()
-drumhead_test(NAME kernels_threads_test SOURCES kernels_threads_test.cpp
-  LINK drumhead_fields OpenMP::OpenMP_CXX LABEL unit)
 foreach(name coarsen curve cut_cells field lattice material)
   drumhead_test(NAME grid_${name}_test SOURCES grid_${name}_test.cpp
     LINK drumhead::grid LABEL unit)

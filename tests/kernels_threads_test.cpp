@@ -3,12 +3,11 @@
 // stage.
 #include <vector>
 
-#include <omp.h>
-
 #include <gtest/gtest.h>
 
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
+#include <drumhead/kernels/threads.h>
 #include <drumhead/kernels/transfer.h>
 
 #include "support/kernel_cases.h"
@@ -22,24 +21,15 @@ using fields::RandomLevel;
 
 constexpr int kMostThreads = 4;
 
-class ThreadCount {
- public:
-  ThreadCount() : before_(omp_get_max_threads()) {}
-  ~ThreadCount() { omp_set_num_threads(before_); }
-  ThreadCount(const ThreadCount&) = delete;
-  ThreadCount& operator=(const ThreadCount&) = delete;
-  void use(int threads) { omp_set_num_threads(threads); }
+// Twice what a pass over the nodes, on the coarser lattice too, needs to be shared out.
+constexpr int kLarge = 1280;
 
- private:
-  int before_;
-};
-
-LevelSpec large(bool mu_cells, fields::Kappa kappa) {
-  return {.nx = 300,
-          .ny = 301,
+LevelSpec lattice(int n, bool mu_cells, fields::Kappa kappa) {
+  return {.nx = n,
+          .ny = n + 1,
           .mu_cells = mu_cells,
           .kappa = kappa,
-          .cuts = 9000,
+          .cuts = n * n / 10,
           .stiffness = 3.0,
           .jump = 0.0625};
 }
@@ -47,11 +37,10 @@ LevelSpec large(bool mu_cells, fields::Kappa kappa) {
 /// result() has the same bits on one and on more threads.
 template <class Result>
 void expect_bits_of_one_thread(Result&& result) {
-  ThreadCount count;
-  count.use(1);
+  const kernels::ThreadLimit one(1);
   const auto expected = result();
   for (int threads = 2; threads <= kMostThreads; ++threads) {
-    count.use(threads);
+    const kernels::ThreadLimit several(threads);
     EXPECT_TRUE(fields::same_bits(result(), expected)) << threads << " threads";
   }
 }
@@ -60,19 +49,20 @@ template <class T>
 class KernelsThreads : public testing::Test {};
 TYPED_TEST_SUITE(KernelsThreads, fields::Numbers, fields::NumberName);
 
-TYPED_TEST(KernelsThreads, ThereReallyAreSeveral) {
-  ThreadCount count;
-  count.use(kMostThreads);
-  int threads = 0;
-#pragma omp parallel
-#pragma omp single
-  threads = omp_get_num_threads();
-  EXPECT_EQ(threads, kMostThreads);
+TEST(ThreadLimit, HoldsForItsScope) {
+  const int before = kernels::thread_limit();
+  {
+    const kernels::ThreadLimit three(3);
+    EXPECT_EQ(kernels::thread_limit(), 3);
+    const kernels::ThreadLimit as_it_is(0);
+    EXPECT_EQ(kernels::thread_limit(), 3);
+  }
+  EXPECT_EQ(kernels::thread_limit(), before);
 }
 
 template <class T>
 void expect_relaxation_of_one_thread(bool from_zero, bool prolong, bool restrict) {
-  const LevelSpec spec = large(false, fields::Kappa::constant);
+  const LevelSpec spec = lattice(300, false, fields::Kappa::constant);
   kernels::RowScratch<T> scratch(spec.nx + 1, kMostThreads);
   expect_bits_of_one_thread([&] {
     RandomLevel<T> level(spec);
@@ -106,7 +96,7 @@ TYPED_TEST(KernelsThreads, RelaxationWithAllStagesHasTheBitsOfOneThread) {
 
 TYPED_TEST(KernelsThreads, RelaxationWithoutPressuresHasTheBitsOfOneThread) {
   using T = TypeParam;
-  LevelSpec spec = large(true, fields::Kappa::constant);
+  LevelSpec spec = lattice(300, true, fields::Kappa::constant);
   spec.pressure = false;
   kernels::RowScratch<T> scratch(spec.nx + 1, kMostThreads);
   expect_bits_of_one_thread([&] {
@@ -120,7 +110,7 @@ TYPED_TEST(KernelsThreads, RelaxationWithoutPressuresHasTheBitsOfOneThread) {
 
 TYPED_TEST(KernelsThreads, HessianProductAndForceHaveTheBitsOfOneThread) {
   using T = TypeParam;
-  RandomLevel<T> level(large(true, fields::Kappa::cells));
+  RandomLevel<T> level(lattice(kLarge, true, fields::Kappa::cells));
   expect_bits_of_one_thread([&] {
     OwnedUnknowns<T> product(level.spec.nx, level.spec.ny, true);
     OwnedUnknowns<T> force(level.spec.nx, level.spec.ny, true);
@@ -132,7 +122,7 @@ TYPED_TEST(KernelsThreads, HessianProductAndForceHaveTheBitsOfOneThread) {
 
 TYPED_TEST(KernelsThreads, SumsHaveTheBitsOfOneThread) {
   using T = TypeParam;
-  RandomLevel<T> level(large(true, fields::Kappa::cells));
+  RandomLevel<T> level(lattice(kLarge, true, fields::Kappa::cells));
   kernels::RowScratch<T> scratch(level.spec.nx + 1, kMostThreads);
   expect_bits_of_one_thread([&] {
     const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), level.d.view(), T(0.3));
@@ -148,7 +138,7 @@ TYPED_TEST(KernelsThreads, SumsHaveTheBitsOfOneThread) {
 
 TYPED_TEST(KernelsThreads, TransfersHaveTheBitsOfOneThread) {
   using T = TypeParam;
-  RandomLevel<T> level(large(false, fields::Kappa::constant));
+  RandomLevel<T> level(lattice(kLarge, false, fields::Kappa::constant));
   const int nx = level.spec.nx, ny = level.spec.ny;
   expect_bits_of_one_thread([&] {
     OwnedUnknowns<T> down((nx + 1) / 2, (ny + 1) / 2, true), up(nx, ny, true);

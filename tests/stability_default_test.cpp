@@ -32,9 +32,10 @@ double worst_gap_rms_cells(const multigrid::SolveReport& report) {
   return worst;
 }
 
-// The oracle starts from the solver's lattice, because the jump's minimum need not be unique: S1 kappa 10,
-// whose tips are singular, has critical points from L = 2.0715 to 2.0858 (the oracle's own from the harmonic
-// start: 2.0848). There the solver may end up to a thousandth above the oracle's own, elsewhere not at all.
+// The oracle starts from the solver's lattice, because the jump's minimum need not be unique: S1
+// kappa 10, whose tips are singular, has critical points from L = 2.0715 to 2.0858 (the oracle's
+// own from the harmonic start: 2.0848). There the solver may end up to a thousandth above the
+// oracle's own, elsewhere not at all.
 TEST_P(DefaultPath, SolvesItsOwnEquations) {
   const scenes::ReferenceCase& c = GetParam();
   const oracle::OracleScene scene = oracle::make_scene(c.scene, kCells, c.kappa, kDefaultRows);

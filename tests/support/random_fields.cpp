@@ -107,8 +107,7 @@ RandomCuts<T>::RandomCuts(const LevelSpec& spec, Random& random) : jump(T(spec.j
   std::vector<int> cells;
   for (int n = 0; n < spec.cuts; ++n) cells.push_back(random.whole(0, spec.nx * spec.ny - 1));
   std::ranges::sort(cells);
-  const auto repeated = std::ranges::unique(cells);
-  cells.erase(repeated.begin(), repeated.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   for (const int cell : cells) add(spec, random, cell % spec.nx, cell / spec.nx);
   row_begin.assign(std::size_t(spec.ny) + 1, 0);
   for (const int j : row) ++row_begin[std::size_t(j) + 1];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curve pairs (Setaluri et al. 2014, section 3): a source curve S(s) drawn on the picture and the target
-// curve that the warp carries it to. Both are chains of cubic Béziers in picture pixels (continuous: 0 at
-// the left and top edge, x right, y down). One pair of equal parameters (segment, t) gives one constraint
-// point; `matched` makes the chains have equal numbers of segments when they have not.
+// Curve pairs (Setaluri et al. 2014, section 3): a source curve S(s) drawn on the picture and the
+// target curve that the warp carries it to. Both are chains of cubic Béziers in picture pixels
+// (continuous: 0 at the left and top edge, x right, y down). One pair of equal parameters (segment,
+// t) gives one constraint point; `matched` makes the chains have equal numbers of segments when
+// they have not.
 #include <array>
 #include <limits>
 #include <string>
@@ -42,12 +43,13 @@ double arc_length(const std::vector<CubicBezier>& chain);
 
 /// A source curve and where it goes.
 struct CurvePair {
-  std::string name;                  ///< named in errors and in the report
-  std::vector<CubicBezier> source;   ///< connected chain on the picture, at least one segment
-  std::vector<CubicBezier> target;   ///< its image; equal to `source` for a pin
+  std::string name;                 ///< named in errors and in the report
+  std::vector<CubicBezier> source;  ///< connected chain on the picture, at least one segment
+  std::vector<CubicBezier> target;  ///< its image; equal to `source` for a pin
   /// d: stiffness per length, in units of mu per longer picture side; infinity: exactly hard. > 0.
   double weight = std::numeric_limits<double>::infinity();
-  double turn_degrees = 0.0;  ///< clockwise turn intended by the user, for rotations beyond 180 degrees
+  double turn_degrees =
+      0.0;  ///< clockwise turn intended by the user, for rotations beyond 180 degrees
 };
 
 /// Two Béziers whose points at equal t correspond.
@@ -55,11 +57,10 @@ struct SegmentPair {
   CubicBezier source, target;
 };
 
-/// The pair as corresponding segments: one to one where both chains have the same number of segments, by
-/// relative arc length otherwise (pieces are divided until equal t deviates from equal relative arc length
-/// by less than 1e-4 of the chain).
-/// Throws std::invalid_argument naming the curve when a chain is empty, has no length or holds a point that
-/// is not finite.
+/// The pair as corresponding segments: one to one where both chains have the same number of
+/// segments, by relative arc length otherwise (pieces are divided until equal t deviates from equal
+/// relative arc length by less than 1e-4 of the chain). Throws std::invalid_argument naming the
+/// curve when a chain is empty, has no length or holds a point that is not finite.
 std::vector<SegmentPair> matched(const CurvePair& pair);
 
 }  // namespace drumhead::grid

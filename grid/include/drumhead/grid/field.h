@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A field that owns its memory: one number per node or cell in the split rows of kernels/views.h, aligned to
-// 64 bytes and zero at first. Its bytes are counted by a meter, so that a solver can say what it took.
+// A field that owns its memory: one number per node or cell in the split rows of kernels/views.h,
+// aligned to 64 bytes and zero at first. Its bytes are counted by a meter, so that a solver can say
+// what it took.
 #include <cstddef>
 #include <utility>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Stiffness mu and compression resistance kappa of the membrane (Setaluri et al. 2014, Eq. 1), constant or
-// one value per cell. A constant stores no field.
+// Stiffness mu and compression resistance kappa of the membrane (Setaluri et al. 2014, Eq. 1),
+// constant or one value per cell. A constant stores no field.
 #include <vector>
 
 #include <drumhead/grid/lattice.h>
@@ -9,8 +9,8 @@
 namespace drumhead::grid {
 
 struct Material {
-  double mu = 1.0;      ///< > 0; the unit of kappa
-  double kappa = 1.0;   ///< in units of mu, 0…infinity; 0: no pressures exist
+  double mu = 1.0;     ///< > 0; the unit of kappa
+  double kappa = 1.0;  ///< in units of mu, 0…infinity; 0: no pressures exist
   /// Optional factors per cell, row after row, i fastest, empty or nx·ny: the cell's stiffness is
   /// mu·mu_cells[c] (> 0) and its compression resistance mu·kappa_cells[c] (≥ 0, replaces `kappa`).
   std::vector<float> mu_cells, kappa_cells;

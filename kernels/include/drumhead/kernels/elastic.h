@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The Compression-Resistant Poisson membrane on a lattice (Setaluri et al. 2014, Eq. 1, 5, 6, 7), matrix-free:
-//   E = Σ_cells mu/4 Σ_edges |Δx̂|² + Σ_cells [P (A J* − A) − A P²/(2 kappa)] + Σ_cuts [q·(b − W x̂) − ½ qᵀ M q]
-// A = h² is the cell's area; the paper's last volume term lacks it. Unknowns are the displacements u = x̂ − X
-// (unit: cells of the finest lattice), P per cell and q per cut cell. The Newton system at a state is
+// The Compression-Resistant Poisson membrane on a lattice (Setaluri et al. 2014, Eq. 1, 5, 6, 7),
+// matrix-free:
+//   E = Σ_cells mu/4 Σ_edges |Δx̂|² + Σ_cells [P (A J* − A) − A P²/(2 kappa)] + Σ_cuts [q·(b − W x̂)
+//   − ½ qᵀ M q]
+// A = h² is the cell's area; the paper's last volume term lacks it. Unknowns are the displacements
+// u = x̂ − X (unit: cells of the finest lattice), P per cell and q per cut cell. The Newton system
+// at a state is
 //   [K + P_H G   Bᵀ         −Wᵀ] [du]   [f.x, f.y]
 //   [B           −A/kappa   0  ] [dP] = [f.p     ]
 //   [−W          0          −M ] [dq]   [f of q  ]
-// Curve terms are in cuts.h; the functions here do the elastic part of every row. Nodes on the boundary are
-// fixed: they are read (as 0 in a correction) and never written.
+// Curve terms are in cuts.h; the functions here do the elastic part of every row. Nodes on the
+// boundary are fixed: they are read (as 0 in a correction) and never written.
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -18,21 +21,23 @@ namespace drumhead::kernels {
 template <class T>
 void apply_hessian(const Membrane<T>& membrane, const Unknowns<const T>& d, const Unknowns<T>& out);
 
-/// r = f − H d without the curve forces (which an f that carries Wᵀ dq already has; see cuts.h). r may alias f.
+/// r = f − H d without the curve forces (which an f that carries Wᵀ dq already has; see cuts.h). r
+/// may alias f.
 template <class T>
 void linear_residual(const Membrane<T>& membrane, const Unknowns<const T>& f,
                      const Unknowns<const T>& d, const Unknowns<T>& r);
 
-/// f = −∂E/∂(x, P) at the membrane's state, without the curve forces: the right-hand side of Newton's method.
+/// f = −∂E/∂(x, P) at the membrane's state, without the curve forces: the right-hand side of
+/// Newton's method.
 template <class T>
 void force(const Membrane<T>& membrane, const Unknowns<T>& f);
 
 /// Sums over all cells; lengths in finest cells, energies in mu times that squared.
 struct EnergySums {
-  double elastic = 0.0;         ///< Σ mu/4 Σ |edge|²
-  double volume = 0.0;          ///< Σ A kappa/2 (J* − 1)²; cells with 1/kappa = 0 store none
-  /// Σ A [P⁺ c + km/2 c²], c = J* − 1 − P⁺/kappa, km = min(kappa, 100 mu), P⁺ = P + dP; where kappa ≤ 100 mu
-  /// simply A kappa/2 (J* − 1)²: the volume part of the line search's merit function.
+  double elastic = 0.0;  ///< Σ mu/4 Σ |edge|²
+  double volume = 0.0;   ///< Σ A kappa/2 (J* − 1)²; cells with 1/kappa = 0 store none
+  /// Σ A [P⁺ c + km/2 c²], c = J* − 1 − P⁺/kappa, km = min(kappa, 100 mu), P⁺ = P + dP; where kappa
+  /// ≤ 100 mu simply A kappa/2 (J* − 1)²: the volume part of the line search's merit function.
   double volume_merit = 0.0;
   double inverted_cells = 0.0;  ///< number of cells with J* < 0
 };

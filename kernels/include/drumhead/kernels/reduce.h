@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums and vector updates over fields. Sums are taken in double, sixteen a row, rows added in order: the same
-// bits for every instruction set and number of threads.
+// Sums and vector updates over fields. Sums are taken in double, sixteen a row, rows added in
+// order: the same bits for every instruction set and number of threads.
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The relaxation of one level, fused with the transfers around it into one skewed pass over the rows:
-//   [clear d or add the prolonged coarse correction] → nodes red → nodes black → volume rows, 2×2 colours →
-//   curve rows → curve rows and volume rows in reverse → [residual, restricted to the coarser level].
-// Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag K inner
-// product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014, Eq. 4).
+// The relaxation of one level, fused with the transfers around it into one skewed pass over the
+// rows:
+//   [clear d or add the prolonged coarse correction] → nodes red → nodes black → volume rows, 2×2
+//   colours → curve rows → curve rows and volume rows in reverse → [residual, restricted to the
+//   coarser level].
+// Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag
+// K inner product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014,
+// Eq. 4).
 #include <vector>
 
 #include <drumhead/kernels/cuts.h>
@@ -12,8 +15,8 @@
 
 namespace drumhead::kernels {
 
-/// One level of a Newton system: operator, correction and right-hand side. f.x, f.y carry the curve forces
-/// Wᵀ dq (see cuts.h) and change with dq.
+/// One level of a Newton system: operator, correction and right-hand side. f.x, f.y carry the curve
+/// forces Wᵀ dq (see cuts.h) and change with dq.
 template <class T>
 struct LevelSystem {
   Membrane<T> membrane;
@@ -45,8 +48,8 @@ class RowScratch {
   std::vector<Rows> rows_;
 };
 
-/// Σ (f − H d)² over momentum rows plus that over volume rows per spacing² (so that rows are of one size on
-/// every level); curve rows are the caller's. Nothing is stored.
+/// Σ (f − H d)² over momentum rows plus that over volume rows per spacing² (so that rows are of one
+/// size on every level); curve rows are the caller's. Nothing is stored.
 template <class T>
 double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch);
 
@@ -54,11 +57,11 @@ struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
 };
 
-/// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p) prolongation is
-/// added first. `coarse_f`: if not null, receives the adjoint restriction of the elastic residual f − H d
-/// afterwards (curve rows: the caller's).
+/// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p)
+/// prolongation is added first. `coarse_f`: if not null, receives the adjoint restriction of the
+/// elastic residual f − H d afterwards (curve rows: the caller's).
 template <class T>
-void relax(const LevelSystem<T>& level, const RelaxStages& stages, const Unknowns<const T>* coarse_d,
-           const Unknowns<T>* coarse_f, RowScratch<T>& scratch);
+void relax(const LevelSystem<T>& level, const RelaxStages& stages,
+           const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch);
 
 }  // namespace drumhead::kernels

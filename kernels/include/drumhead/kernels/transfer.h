@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Transfers of states between a lattice and its coarser one (Setaluri et al. 2014, section 3.5). Coarse node
-// (I, J) lies on fine node (2I, 2J); coarse counts are half the fine ones, odd counts rounded up. The
-// transfers of corrections and residuals inside cycles are fused into relax.h. Displacements keep their unit
-// on all levels, so nothing is rescaled.
+// Transfers of states between a lattice and its coarser one (Setaluri et al. 2014, section 3.5).
+// Coarse node (I, J) lies on fine node (2I, 2J); coarse counts are half the fine ones, odd counts
+// rounded up. The transfers of corrections and residuals inside cycles are fused into relax.h.
+// Displacements keep their unit on all levels, so nothing is rescaled.
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {

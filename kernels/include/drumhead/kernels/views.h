@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Windows on fields of a lattice. They own nothing. A row is stored split by parity: its even columns lie
-// side by side, its odd columns follow at the distance `odd`, so that red and black nodes, the column colours
-// of cells and the nodes that a coarser lattice keeps are each contiguous, and a vector of one colour has no
-// idle lane. Column i of row j is data[j·stride + (i mod 2)·odd + i/2].
+// Windows on fields of a lattice. They own nothing. A row is stored split by parity: its even
+// columns lie side by side, its odd columns follow at the distance `odd`, so that red and black
+// nodes, the column colours of cells and the nodes that a coarser lattice keeps are each
+// contiguous, and a vector of one colour has no idle lane. Column i of row j is data[j·stride + (i
+// mod 2)·odd + i/2].
 #include <cstddef>
 #include <type_traits>
 
@@ -20,7 +21,7 @@ template <class T>
 struct Plane {
   T* data = nullptr;
   std::ptrdiff_t stride = 0;  ///< distance between rows, ≥ odd + columns/2
-  std::ptrdiff_t odd = 0;     ///< distance from a row's even half to its odd half, ≥ (columns+1)/2
+  std::ptrdiff_t odd = 0;  ///< distance from a row's even half to its odd half, ≥ (columns+1)/2
   int columns = 0, rows = 0;
 
   /// Values of the columns parity, parity + 2, … of row j.
@@ -28,9 +29,7 @@ struct Plane {
   SplitRow<T> row(int j) const { return {{half(j, 0), half(j, 1)}}; }
   T& at(int i, int j) const { return half(j, i & 1)[i >> 1]; }
   explicit operator bool() const { return data != nullptr; }
-  operator Plane<const T>() const
-    requires(!std::is_const_v<T>)
-  {
+  operator Plane<const T>() const requires(!std::is_const_v<T>) {
     return {data, stride, odd, columns, rows};
   }
 };
@@ -38,16 +37,12 @@ struct Plane {
 /// Columns of one parity among `columns`.
 constexpr int half_count(int columns, int parity) { return (columns + 1 - parity) / 2; }
 
-/// What a Newton system has per node (x, y) and per cell (p; null where no pressures exist): a correction, a
-/// right-hand side or a residual. (nx+1) × (ny+1) nodes, nx × ny cells.
+/// What a Newton system has per node (x, y) and per cell (p; null where no pressures exist): a
+/// correction, a right-hand side or a residual. (nx+1) × (ny+1) nodes, nx × ny cells.
 template <class T>
 struct Unknowns {
   Plane<T> x, y, p;
-  operator Unknowns<const T>() const
-    requires(!std::is_const_v<T>)
-  {
-    return {x, y, p};
-  }
+  operator Unknowns<const T>() const requires(!std::is_const_v<T>) { return {x, y, p}; }
 };
 
 /// A material value, constant or per cell.
@@ -57,37 +52,41 @@ struct Coefficient {
   Plane<const T> cells;  ///< null: `value` everywhere
 };
 
-/// The membrane linearised at a state: all that its operators read (Eq. 5, 6, 7 of Setaluri et al. 2014). Displacements u = x̂ − X of every level are in cells of the finest lattice; a level's own cell side
-/// in this unit is `spacing`.
+/// The membrane linearised at a state: all that its operators read (Eq. 5, 6, 7 of Setaluri et al.
+/// 2014). Displacements u = x̂ − X of every level are in cells of the finest lattice; a level's own
+/// cell side in this unit is `spacing`.
 template <class T>
 struct Membrane {
-  Plane<const T> ux, uy;        ///< state: displacement of the nodes
-  Plane<const T> pressure;      ///< state: P per cell, null where kappa = 0 in the whole scene
-  T spacing = T(1);             ///< h of this level in finest cells
-  Coefficient<T> mu;            ///< stiffness
-  Coefficient<T> compliance;    ///< 1/kappa; 0: incompressible
-  /// 1/K_ii per node, 0 on the fixed boundary; needed only with mu per cell, null otherwise (K_ii = 4 mu).
+  Plane<const T> ux, uy;      ///< state: displacement of the nodes
+  Plane<const T> pressure;    ///< state: P per cell, null where kappa = 0 in the whole scene
+  T spacing = T(1);           ///< h of this level in finest cells
+  Coefficient<T> mu;          ///< stiffness
+  Coefficient<T> compliance;  ///< 1/kappa; 0: incompressible
+  /// 1/K_ii per node, 0 on the fixed boundary; needed only with mu per cell, null otherwise (K_ii =
+  /// 4 mu).
   Plane<const T> inverse_diagonal;
   /// Pressure in the Hessian: P_H = clamp(P − clamp_centre, ±clamp_width·mu).
   T clamp_centre = T(0);
   T clamp_width = T(1);
 };
 
-/// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then column.
-/// Row k reads −W_k du − (M dq)_k for each component, with M q = compliance·q plus the jump term
-/// jump·Σ_links strength (q_k/len_k − q_l/len_l)/len_k. Weights of nodes on the fixed boundary are 0.
+/// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then
+/// column. Row k reads −W_k du − (M dq)_k for each component, with M q = compliance·q plus the jump
+/// term jump·Σ_links strength (q_k/len_k − q_l/len_l)/len_k. Weights of nodes on the fixed boundary
+/// are 0.
 template <class T>
 struct Cuts {
   int count = 0;
-  const int* row_begin = nullptr;   ///< ny+1 indices: cuts of cell row j are [row_begin[j], row_begin[j+1])
-  const int* column = nullptr;      ///< cell column of each cut
-  const T* weight = nullptr;        ///< four per cut: nodes 00, 10, 01, 11
-  const T* compliance = nullptr;    ///< 1/(d len), 0: hard
-  const T* length = nullptr;        ///< len, in finest cells
-  const int* link_begin = nullptr;  ///< count+1 indices into link, link_strength
-  const int* link = nullptr;        ///< cuts that follow or precede along a curve
-  const T* link_strength = nullptr; ///< min(len_k, len_l)²
-  T jump = T(0);                    ///< qs/mu; 0: exact rows
+  const int* row_begin =
+      nullptr;  ///< ny+1 indices: cuts of cell row j are [row_begin[j], row_begin[j+1])
+  const int* column = nullptr;       ///< cell column of each cut
+  const T* weight = nullptr;         ///< four per cut: nodes 00, 10, 01, 11
+  const T* compliance = nullptr;     ///< 1/(d len), 0: hard
+  const T* length = nullptr;         ///< len, in finest cells
+  const int* link_begin = nullptr;   ///< count+1 indices into link, link_strength
+  const int* link = nullptr;         ///< cuts that follow or precede along a curve
+  const T* link_strength = nullptr;  ///< min(len_k, len_l)²
+  T jump = T(0);                     ///< qs/mu; 0: exact rows
 };
 
 }  // namespace drumhead::kernels

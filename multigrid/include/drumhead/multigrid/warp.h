@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The façade: a picture's lattice, its material and its curve pairs go in, node displacements and a report
-// come out. Minimises Eq. 5 of Setaluri et al. 2014 by Newton's method in nested iteration over a
-// matrix-free multigrid solver. All lengths in picture pixels; a caller who has no picture may take any unit.
+// The façade: a picture's lattice, its material and its curve pairs go in, node displacements and a
+// report come out. Minimises Eq. 5 of Setaluri et al. 2014 by Newton's method in nested iteration
+// over a matrix-free multigrid solver. All lengths in picture pixels; a caller who has no picture
+// may take any unit.
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,12 +20,12 @@ struct WarpProblem {
   std::vector<grid::CurvePair> curves;
 };
 
-/// What the solver is doing, for a progress line. Called from the calling thread, a few times per second
-/// at most per lattice level and Newton step.
+/// What the solver is doing, for a progress line. Called from the calling thread, a few times per
+/// second at most per lattice level and Newton step.
 struct Progress {
-  int nx = 0, ny = 0;      ///< the level
-  int newton_step = 0;     ///< on that level, from 1
-  double fraction = 0.0;   ///< rough share of the whole solve that is done, 0…1
+  int nx = 0, ny = 0;     ///< the level
+  int newton_step = 0;    ///< on that level, from 1
+  double fraction = 0.0;  ///< rough share of the whole solve that is done, 0…1
 };
 
 struct SolverOptions {
@@ -33,7 +34,7 @@ struct SolverOptions {
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
   /// discretisation error.
   double tolerance_px = 0.0;
-  int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides
+  int threads = 0;                                ///< OpenMP threads; 0: as OpenMP decides
   std::function<void(const Progress&)> progress;  ///< optional
 };
 
@@ -47,12 +48,13 @@ enum class Status {
 const char* name(Status status);
 
 struct NewtonStep {
-  double theta = 1.0;        ///< clamp of the pressure in the Hessian, in units of mu; infinity: exact Hessian
-  double step = 1.0;         ///< accepted step length t
-  int krylov = 0;            ///< cycles of the linear solver
-  double residual = 0.0;     ///< relative residual left by the linear solver
+  double theta =
+      1.0;  ///< clamp of the pressure in the Hessian, in units of mu; infinity: exact Hessian
+  double step = 1.0;      ///< accepted step length t
+  int krylov = 0;         ///< cycles of the linear solver
+  double residual = 0.0;  ///< relative residual left by the linear solver
   double dx_rms_px = 0.0, dx_max_px = 0.0;
-  int inverted_cells = 0;    ///< after the step
+  int inverted_cells = 0;  ///< after the step
 };
 struct LevelReport {
   int nx = 0, ny = 0;
@@ -60,13 +62,13 @@ struct LevelReport {
 };
 struct CurveReport {
   std::string name;
-  double length_px = 0.0;    ///< of the source
-  double gap_rms_px = 0.0, gap_max_px = 0.0;   ///< distance warped source – target along the curve
-  grid::Point worst_px;      ///< where on the source the gap is largest
+  double length_px = 0.0;                     ///< of the source
+  double gap_rms_px = 0.0, gap_max_px = 0.0;  ///< distance warped source – target along the curve
+  grid::Point worst_px;                       ///< where on the source the gap is largest
 };
 struct FoldReport {
-  int inverted_cells = 0;    ///< J* < 0 at the centre
-  int folded_cells = 0;      ///< J < 0 at any corner
+  int inverted_cells = 0;  ///< J* < 0 at the centre
+  int folded_cells = 0;    ///< J < 0 at any corner
   double min_J = 1.0, min_corner_J = 1.0;
   std::vector<grid::Point> places_px;  ///< rest centres of at most 20 folded cells
 };
@@ -79,22 +81,24 @@ struct SolveReport {
   std::string model = "crpm";
   bool exact = false;
   int lattice_levels = 0;
-  std::vector<LevelReport> levels;     ///< levels of the nested iteration, coarsest first
-  double work_units = 0.0;             ///< (cut + solve seconds) / work_unit_seconds
-  double work_unit_seconds = 0.0;      ///< one Hessian–vector product on the finest lattice, timed in this run
+  std::vector<LevelReport> levels;  ///< levels of the nested iteration, coarsest first
+  double work_units = 0.0;          ///< (cut + solve seconds) / work_unit_seconds
+  double work_unit_seconds =
+      0.0;  ///< one Hessian–vector product on the finest lattice, timed in this run
   double algebraic_rms_px = 0.0, algebraic_max_px = 0.0;
   double discretisation_rms_px = 0.0, discretisation_max_px = 0.0;
   std::vector<CurveReport> curves;
   FoldReport folds;
   EnergyReport energy;
   double cut_seconds = 0.0, solve_seconds = 0.0;
-  std::size_t solver_bytes = 0;        ///< peak of the memory that the solver allocated
-  std::string isa;                     ///< instruction set of the kernels
+  std::size_t solver_bytes = 0;  ///< peak of the memory that the solver allocated
+  std::string isa;               ///< instruction set of the kernels
   int threads = 1;
-  std::vector<std::string> notes;      ///< what the solver changed or could not do, in words
+  std::vector<std::string> notes;  ///< what the solver changed or could not do, in words
 };
 
-/// The deformed lattice: displacement of node (i, j) at index j·(nx+1)+i, pressure of cell (i, j) at j·nx+i.
+/// The deformed lattice: displacement of node (i, j) at index j·(nx+1)+i, pressure of cell (i, j)
+/// at j·nx+i.
 struct Solution {
   grid::Lattice lattice;
   std::vector<double> u_px, v_px;
@@ -102,8 +106,8 @@ struct Solution {
   SolveReport report;
 };
 
-/// Solves a scene. Throws std::invalid_argument, naming value and bound, for bad input only; numerical
-/// outcomes are in `report.status`, and the best iterate is always returned.
+/// Solves a scene. Throws std::invalid_argument, naming value and bound, for bad input only;
+/// numerical outcomes are in `report.status`, and the best iterate is always returned.
 [[nodiscard]] Solution solve(const WarpProblem& problem, const SolverOptions& options = {});
 
 }  // namespace drumhead::multigrid
