@@ -24,3 +24,5 @@ foreach(name exact default nested)
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
+drumhead_test(NAME stability_degenerate_test
+  SOURCES stability_degenerate_test.cpp LINK drumhead::multigrid LABEL numeric)
