@@ -139,8 +139,8 @@ void RandomCuts<T>::join(Random& random) {
   const std::size_t count = column.size();
   std::vector<std::vector<int>> links(count);
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t l = k + 1; l < count; ++l) {
-      if (std::abs(column[k] - column[l]) > 1 || std::abs(row[k] - row[l]) > 1) continue;
+    for (std::size_t l = k + 1; l < count && row[l] - row[k] <= 1; ++l) {
+      if (std::abs(column[k] - column[l]) > 1) continue;
       if (random.whole(0, 2) == 0) continue;
       links[k].push_back(int(l));
       links[l].push_back(int(k));
