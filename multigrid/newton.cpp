@@ -25,6 +25,56 @@ constexpr int kMostCreeping = 5;
 // A step is taken against the merit when the norm of all equations falls below this share.
 constexpr double kSolves = 0.5;
 
+/// Files the steps of a run and decides when it ends.
+class Judge {
+ public:
+  Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
+
+  /// True if the run ends with this step; the report then has its status. `rounding`: moves below
+  /// it are noise.
+  bool ends_with(const NewtonStep& step, double rounding) {
+    const bool first = report_.steps.empty();
+    const NewtonStep before = first ? step : report_.steps.back();
+    report_.steps.push_back(step);
+    report_.change_rms += step.dx_rms_px;
+    report_.change_max += step.dx_max_px;
+
+    const bool full = step.step == 1.0;
+    creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
+    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping)
+      return end(Status::stalled);
+    // After a larger theta a step converges more slowly: no contraction is seen from it.
+    const bool comparable = step.theta >= before.theta;
+    if (!first && full && comparable && before.step == 1.0)
+      report_.rate = std::min(0.9, step.dx_rms_px / before.dx_rms_px);
+    const double left = std::max(report_.rate, step.residual) / (1.0 - std::min(0.9, report_.rate));
+    report_.error_rms = left * step.dx_rms_px;
+    report_.error_max = left * step.dx_max_px;
+    // Where a step was shortened or theta lowered, one small step may be chance.
+    trouble_ = trouble_ || !full || !comparable;
+    settled_ = full && comparable && small(step) ? settled_ + 1 : 0;
+    if (settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
+    return full && step.dx_rms_px <= rounding && end(Status::stalled);
+  }
+
+ private:
+  bool small(const NewtonStep& step) const {
+    const double wanted = std::max(options_.tolerance_rms,
+                                   options_.share_of_discretisation * 0.5 * report_.change_rms);
+    return report_.error_rms <= wanted &&
+           (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
+  }
+  bool end(Status status) {
+    report_.status = status;
+    return true;
+  }
+
+  const NewtonOptions& options_;
+  NewtonReport& report_;
+  int creeping_ = 0, settled_ = 0;
+  bool trouble_ = false;
+};
+
 }  // namespace
 
 template <class T>
@@ -160,12 +210,6 @@ LinearReport Newton<T>::harmonic(const LinearOptions& options) {
   return report;
 }
 
-template <class T>
-bool Newton<T>::finite(const NewtonStep& step) const {
-  return std::isfinite(step.dx_rms_px) && std::isfinite(step.dx_max_px) &&
-         std::isfinite(step.residual);
-}
-
 /// Moves below this are rounding: the state's largest displacement times the precision of T.
 template <class T>
 double Newton<T>::precision() const {
@@ -174,82 +218,57 @@ double Newton<T>::precision() const {
   return double(std::numeric_limits<T>::epsilon()) * largest;
 }
 
+/// Solves the linear system at the state; lowers theta where that stagnates.
+template <class T>
+LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
+                                   ClampSchedule& clamp) {
+  const bool pressure = bool(level_.pressure);
+  const int top = hierarchy_.index_of(level_);
+  LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options, meter_);
+  if (linear.residual > kStagnated && clamp.theta > 1.0) {
+    // Indefinite far from a solution: a smaller theta is closer to the positive definite Hessian.
+    clamp.theta = clamp.most = std::max(1.0, clamp.theta / (kGrow * kGrow));
+    set_clamp(clamp.theta);
+    set_force(pressure);
+    const int wasted = linear.cycles;
+    linear = solve_linear(hierarchy_, top, pressure, norm, options, meter_);
+    linear.cycles += wasted;
+  }
+  return linear;
+}
+
 template <class T>
 NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
                             const std::function<void(int)>& progress) {
   NewtonReport report;
   report.rate = options.expected_rate;
+  Judge judge(options, report);
   const bool pressure = bool(level_.pressure);
-  const int top = hierarchy_.index_of(level_);
-  report.status = Status::limit;
-  int creeping = 0, settled = 0;
-  bool trouble = false;
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
     const double norm = force_norm(pressure);
-    LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
-    if (linear.residual > kStagnated && clamp.theta > 1.0) {
-      // Indefinite far from a solution: a smaller theta is closer to the positive definite Hessian.
-      clamp.theta = clamp.most = std::max(1.0, clamp.theta / (kGrow * kGrow));
-      set_clamp(clamp.theta);
-      set_force(pressure);
-      const int wasted = linear.cycles;
-      linear = solve_linear(hierarchy_, top, pressure, norm, options.linear, meter_);
-      linear.cycles += wasted;
-    }
+    const LinearReport linear = solve_step(norm, options.linear, clamp);
     const auto d = level_.d.view();
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
     const double rms = std::sqrt(squares / double(level_.nodes()));
-    NewtonStep step = std::isfinite(rms) ? line_search(norm) : NewtonStep{.step = 0.0};
+    if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p))) {
+      report.status = Status::not_finite;
+      return report;
+    }
+    NewtonStep step = line_search(norm);
     step.theta = clamp.theta;
     step.krylov = linear.cycles;
     step.residual = linear.residual;
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
-    if (!std::isfinite(rms) || !finite(step)) {
-      report.status = Status::not_finite;
-      return report;
-    }
     if (step.step > 0.0) update(step.step, pressure);
-    report.steps.push_back(step);
-    report.change_rms += step.dx_rms_px;
-    report.change_max += step.dx_max_px;
-
-    const bool full = step.step == 1.0;
-    creeping = step.step < kCreep ? creeping + 1 : 0;
-    if ((step.step == 0.0 && clamp.theta <= 1.0) || creeping >= kMostCreeping) {
-      report.status = Status::stalled;
-      return report;
-    }
-    // A step with a smaller theta than the one before converges more slowly: no contraction is seen
-    // from it.
-    const bool comparable = n == 0 || step.theta >= report.steps[std::size_t(n) - 1].theta;
-    if (n > 0 && full && comparable && report.steps[std::size_t(n) - 1].step == 1.0)
-      report.rate = std::min(0.9, step.dx_rms_px / report.steps[std::size_t(n) - 1].dx_rms_px);
-    const double left = std::max(report.rate, linear.residual) / (1.0 - std::min(0.9, report.rate));
-    report.error_rms = left * step.dx_rms_px;
-    report.error_max = left * step.dx_max_px;
-    const double wanted =
-        std::max(options.tolerance_rms, options.share_of_discretisation * 0.5 * report.change_rms);
-    // Where a step was shortened or theta lowered, one small step may be chance: two in a row are
-    // asked for.
-    trouble = trouble || !full || !comparable;
-    const bool small = full && comparable && report.error_rms <= wanted &&
-                       (options.tolerance_max == 0.0 || step.dx_max_px <= options.tolerance_max);
-    settled = small ? settled + 1 : 0;
-    if (settled >= (trouble ? 2 : 1)) {
-      report.status = Status::converged;
-      return report;
-    }
-    if (full && rms <= precision()) {
-      report.status = Status::stalled;
-      return report;
-    }
-    clamp.theta =
-        full ? std::min(clamp.theta * kGrow, kExactTheta) : std::max(1.0, clamp.theta / kGrow);
+    if (judge.ends_with(step, precision())) return report;
+    clamp.theta = step.step == 1.0 ? std::min(clamp.theta * kGrow, kExactTheta)
+                                   : std::max(1.0, clamp.theta / kGrow);
   }
+  report.status = Status::limit;
   return report;
 }
 

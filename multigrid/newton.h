@@ -59,7 +59,7 @@ class Newton {
   bool full_step_solves(double norm_before);
   NewtonStep line_search(double norm_before);
   void update(double step, bool pressure);
-  bool finite(const NewtonStep& step) const;
+  LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
 
   Hierarchy<T>& hierarchy_;
