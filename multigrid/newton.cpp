@@ -218,6 +218,14 @@ double Newton<T>::precision() const {
   return double(std::numeric_limits<T>::epsilon()) * largest;
 }
 
+template <class T>
+double Newton<T>::largest_row_gap() {
+  set_force(bool(level_.pressure));
+  double largest = 0.0;
+  for (const T gap : level_.fq) largest = std::max(largest, std::abs(double(gap)));
+  return largest;
+}
+
 /// Solves the linear system at the state; lowers theta where that stagnates.
 template <class T>
 LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,

@@ -45,6 +45,9 @@ class Newton {
   /// Sets the state to the harmonic one (kappa = 0; linear): x̂ and q.
   LinearReport harmonic(const LinearOptions& options);
 
+  /// Largest |b − W u − M q| of a curve row at the current state, in finest cells.
+  double largest_row_gap();
+
   /// Steps from the current state of the level.
   NewtonReport run(const NewtonOptions& options, ClampSchedule& clamp,
                    const std::function<void(int step)>& progress);
