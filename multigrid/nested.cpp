@@ -158,7 +158,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       hierarchy.drop_jump();
       ClampSchedule exact_clamp{.theta = 1.0, .most = kMostExactTheta};
       NewtonReport exact = newton.run(exact_options(level), exact_clamp, progress);
-      if (newton.largest_row_gap() > kRowMet) exact.status = Status::infeasible;
+      if (!(newton.largest_row_gap() < kRowMet)) exact.status = Status::infeasible;
       exact.steps.insert(exact.steps.begin(), done.steps.begin(), done.steps.end());
       exact.change_rms += done.change_rms;
       exact.change_max += done.change_max;

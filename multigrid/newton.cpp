@@ -52,15 +52,17 @@ class Judge {
     report_.error_max = left * step.dx_max_px;
     // Where a step was shortened or theta lowered, one small step may be chance.
     trouble_ = trouble_ || !full || !comparable;
-    settled_ = full && comparable && small(step) ? settled_ + 1 : 0;
+    settled_ = full && comparable && small(step, rounding) ? settled_ + 1 : 0;
     if (settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
     return full && step.dx_rms_px <= rounding && end(Status::stalled);
   }
 
  private:
-  bool small(const NewtonStep& step) const {
-    const double wanted = std::max(options_.tolerance_rms,
-                                   options_.share_of_discretisation * 0.5 * report_.change_rms);
+  bool small(const NewtonStep& step, double rounding) const {
+    double wanted = options_.tolerance_rms;
+    if (options_.share_of_discretisation > 0.0)
+      wanted =
+          std::max({wanted, options_.share_of_discretisation * 0.5 * report_.change_rms, rounding});
     return report_.error_rms <= wanted &&
            (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
   }
@@ -177,8 +179,12 @@ NewtonStep Newton<T>::line_search(double norm_before) {
     return sums.elastic + sums.volume_merit + curve_merit(step);
   };
   const double before = merit(0.0);
-  // Sums of rounded cell energies are good to a few units of T's precision.
-  const double slack = 4.0 * double(std::numeric_limits<T>::epsilon()) * std::abs(before);
+  // Cell energies are rounded, and so is the gap of every row.
+  double curve_length = 0.0;
+  const kernels::Cuts<T> cuts = level_.cuts.view(T(0));
+  for (int k = 0; k < cuts.count; ++k) curve_length += double(cuts.length[k]);
+  const double slack = 4.0 * (double(std::numeric_limits<T>::epsilon()) * std::abs(before) +
+                              penalty_ * curve_length * precision());
   for (double step = 1.0; step >= kShortestStep; step *= 0.5) {
     if (merit(step) <= before + slack) {
       result.step = step;
@@ -210,19 +216,23 @@ LinearReport Newton<T>::harmonic(const LinearOptions& options) {
   return report;
 }
 
-/// Moves below this are rounding: the state's largest displacement times the precision of T.
+/// Moves below this are rounding: the state's largest displacement (at least a cell) times the
+/// precision of T.
 template <class T>
 double Newton<T>::precision() const {
   const double largest =
       std::max(kernels::largest<T>(level_.ux.view()), kernels::largest<T>(level_.uy.view()));
-  return double(std::numeric_limits<T>::epsilon()) * largest;
+  return double(std::numeric_limits<T>::epsilon()) * std::max(1.0, largest);
 }
 
 template <class T>
 double Newton<T>::largest_row_gap() {
   set_force(bool(level_.pressure));
   double largest = 0.0;
-  for (const T gap : level_.fq) largest = std::max(largest, std::abs(double(gap)));
+  for (const T gap : level_.fq) {
+    const double size = std::abs(double(gap));
+    largest = size <= largest ? largest : size;  // keeps a NaN
+  }
   return largest;
 }
 

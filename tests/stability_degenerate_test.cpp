@@ -196,7 +196,7 @@ TEST(Degenerate, MoreExactRowsThanNodesAreInfeasible) {
     problem.curves = {line("a", {50, 100}, {600, 120}, {50, 60}, {600, 180}),
                       line("b", {50, 230}, {600, 250}, {50, 270}, {600, 190}),
                       line("c", {50, 360}, {600, 380}, {50, 320}, {600, 440}),
-                      line("d", {50, 490}, {600, 510}, {50, 530}, {600, 450})};
+                      line("d", {50, 490}, {600, 510}, {50, 590}, {600, 450})};
     const multigrid::Solution solution = multigrid::solve(problem, {.exact = true});
     EXPECT_EQ(solution.report.status, Status::infeasible) << cells;
   }
