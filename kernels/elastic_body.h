@@ -40,8 +40,9 @@ struct CellCompliance {
 
 /// Node row j of r = f − H d (kResidual) or of H d, without curve forces.
 template <bool kResidual, class T>
-void linear_nodes_row(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<const T>& d,
-                      SplitRow<T> rx, SplitRow<T> ry, int j) {
+[[gnu::flatten]] void linear_nodes_row(const Membrane<T>& m, const Unknowns<const T>* f,
+                                       const Unknowns<const T>& d, SplitRow<T> rx, SplitRow<T> ry,
+                                       int j) {
   with_scene(m, [&](auto pressure, auto mu_cells) {
     for (int parity = 0; parity < 2; ++parity) {
       const NodeStencil<T, pressure.value, mu_cells.value> stencil(m, d, j, parity);
@@ -53,9 +54,13 @@ void linear_nodes_row(const Membrane<T>& m, const Unknowns<const T>* f, const Un
         fy = f->y.half(j, parity);
       }
       for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
+        stencil.prefetch(k, 1);
+        for (const T* at : {out_x, out_y}) __builtin_prefetch(at + k + stencil.node_row, 1);
         decltype(zero) hx, hy, inverse;
         stencil.apply(lane, zero, k, hx, hy, inverse);
         if constexpr (kResidual) {
+          __builtin_prefetch(fx + k + stencil.node_row);
+          __builtin_prefetch(fy + k + stencil.node_row);
           hx = lane.load(fx + k) - hx;
           hy = lane.load(fy + k) - hy;
         }
@@ -68,8 +73,8 @@ void linear_nodes_row(const Membrane<T>& m, const Unknowns<const T>* f, const Un
 
 /// Cell row j of f_p − (B d − A/kappa dP) (kResidual) or of B d − A/kappa dP.
 template <bool kResidual, class T>
-void linear_cells_row(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<const T>& d,
-                      SplitRow<T> r, int j) {
+[[gnu::flatten]] void linear_cells_row(const Membrane<T>& m, const Unknowns<const T>* f,
+                                       const Unknowns<const T>& d, SplitRow<T> r, int j) {
   for (int parity = 0; parity < 2; ++parity) {
     const CellStencil<T> stencil(m, j, parity);
     const Corners<const T> x(d.x, j, parity), y(d.y, j, parity);
@@ -93,7 +98,7 @@ void linear_cells_row(const Membrane<T>& m, const Unknowns<const T>* f, const Un
 
 /// Node row j of −(K x̂ + Bᵀ P): the elastic force, without curve forces.
 template <class T>
-void force_nodes_row(const Membrane<T>& m, const Unknowns<T>& out, int j) {
+[[gnu::flatten]] void force_nodes_row(const Membrane<T>& m, const Unknowns<T>& out, int j) {
   const Unknowns<const T> u{m.ux, m.uy, {}};
   with_scene(m, [&](auto pressure, auto mu_cells) {
     for (int parity = 0; parity < 2; ++parity) {
@@ -113,13 +118,11 @@ void force_nodes_row(const Membrane<T>& m, const Unknowns<T>& out, int j) {
           hy = hy + B(m.spacing) * (s - n);
         }
         if constexpr (pressure.value) {
-          const Diagonals<B> at{lane.load(p.sw + k), lane.load(p.se + k), lane.load(p.ne + k),
-                                lane.load(p.nw + k)};
-          Diagonals<B> x = diagonals(lane, zero, stencil.dx, k),
-                       y = diagonals(lane, zero, stencil.dy, k);
-          stencil.add_rest(x, y);
-          hx = hx + B(T(0.5)) * around(at, y);
-          hy = hy - B(T(0.5)) * around(at, x);
+          const EdgeWeights<B> weight = edge_weights(lane, zero, p, k);
+          hx = hx + B(T(0.5)) * (around(lane, weight, stencil.dy, k) +
+                                 B(m.spacing) * (weight.n - weight.s));
+          hy = hy - B(T(0.5)) * (around(lane, weight, stencil.dx, k) +
+                                 B(m.spacing) * (weight.e - weight.w));
         }
         lane.store(B(T(0)) - hx, fx + k);
         lane.store(B(T(0)) - hy, fy + k);
@@ -152,7 +155,7 @@ B volume_change(L lane, B zero, const CellStencil<T>& stencil, const Corners<con
 
 /// Cell row j of −(A (J* − 1) − A/kappa P).
 template <class T>
-void force_cells_row(const Membrane<T>& m, const Unknowns<T>& out, int j) {
+[[gnu::flatten]] void force_cells_row(const Membrane<T>& m, const Unknowns<T>& out, int j) {
   for (int parity = 0; parity < 2; ++parity) {
     const CellStencil<T> stencil(m, j, parity);
     const CellCompliance<T> compliance(m, j, parity);

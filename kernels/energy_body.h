@@ -28,8 +28,8 @@ B edge_squares(L lane, B, const Corners<const T>& u, const Corners<const T>& d, 
 /// Adds row j's elastic energy, primal volume energy, volume merit and number of inverted cells to
 /// sums.
 template <class T>
-void energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step, bool moved,
-                EnergySums& sums, int j) {
+[[gnu::flatten]] void energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step,
+                                 bool moved, EnergySums& sums, int j) {
   constexpr int kChunk = 256;
   T elastic[kChunk], volume[kChunk], merit[kChunk], inverted[kChunk];
   Sixteen total[4];

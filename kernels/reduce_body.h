@@ -8,7 +8,7 @@
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
 template <class T>
-double dot_row(const Plane<const T>& a, const Plane<const T>& b, int j) {
+[[gnu::flatten]] double dot_row(const Plane<const T>& a, const Plane<const T>& b, int j) {
   Sixteen sums;
   for (int parity = 0; parity < 2; ++parity)
     sums.add_products(a.half(j, parity), b.half(j, parity), half_count(a.columns, parity));
@@ -16,7 +16,7 @@ double dot_row(const Plane<const T>& a, const Plane<const T>& b, int j) {
 }
 
 template <class T>
-double largest_row(const Plane<const T>& a, int j) {
+[[gnu::flatten]] double largest_row(const Plane<const T>& a, int j) {
   T largest = T(0);
   for (int parity = 0; parity < 2; ++parity) {
     const T* values = a.half(j, parity);
@@ -31,7 +31,7 @@ double largest_row(const Plane<const T>& a, int j) {
 
 /// y = a x + b y; b = 0 does not read y.
 template <class T>
-void combine_row(T a, const Plane<const T>& x, T b, const Plane<T>& y, int j) {
+[[gnu::flatten]] void combine_row(T a, const Plane<const T>& x, T b, const Plane<T>& y, int j) {
   for (int parity = 0; parity < 2; ++parity) {
     const T* in = x.half(j, parity);
     T* out = y.half(j, parity);

@@ -13,7 +13,7 @@ constexpr int kBuffer = 512;
 
 /// out[k] = value at column begin + k of a split row; begin even.
 template <class T>
-void join_row(const SplitRow<const T>& row, int begin, int count, T* out) {
+[[gnu::flatten]] void join_row(const SplitRow<const T>& row, int begin, int count, T* out) {
   const T *even = row.half[0] + begin / 2, *odd = row.half[1] + begin / 2;
   const int pairs = count / 2;
   for (int k = 0; k < pairs; ++k) {
@@ -23,7 +23,7 @@ void join_row(const SplitRow<const T>& row, int begin, int count, T* out) {
   if (count & 1) out[count - 1] = even[pairs];
 }
 template <class T>
-void split_row(const T* in, int begin, int count, const SplitRow<T>& row) {
+[[gnu::flatten]] void split_row(const T* in, int begin, int count, const SplitRow<T>& row) {
   T *even = row.half[0] + begin / 2, *odd = row.half[1] + begin / 2;
   const int pairs = count / 2;
   for (int k = 0; k < pairs; ++k) {
@@ -36,7 +36,7 @@ void split_row(const T* in, int begin, int count, const SplitRow<T>& row) {
 /// Fine node row j (+)= bilinear interpolation of the coarse nodes; the fixed boundary is left
 /// alone.
 template <bool kAdd, class T>
-void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
+[[gnu::flatten]] void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
   T natural[kBuffer + 2], upper[kBuffer + 2];
   const int last = fine.columns - 2;  // last interior column
   for (int begin = 0; 2 * begin <= last; begin += kBuffer) {
@@ -73,9 +73,10 @@ void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j
 /// `above` null where row 2J+1 does not exist or is fixed. Fine values on the fixed boundary must
 /// be 0.
 template <class T>
-void restrict_nodes_row(const SplitRow<const T>& below, const SplitRow<const T>& middle,
-                        const SplitRow<const T>* above, int fine_columns, const Plane<T>& coarse,
-                        int j) {
+[[gnu::flatten]] void restrict_nodes_row(const SplitRow<const T>& below,
+                                         const SplitRow<const T>& middle,
+                                         const SplitRow<const T>* above, int fine_columns,
+                                         const Plane<T>& coarse, int j) {
   T column[2][kBuffer + 2], natural[kBuffer];
   const int end = coarse.columns - 1;  // interior coarse columns are [1, end)
   for (int begin = 0; begin < end; begin += kBuffer) {
@@ -109,7 +110,7 @@ void restrict_nodes_row(const SplitRow<const T>& below, const SplitRow<const T>&
 
 /// Coarse node row J = fine node row 2J at the same places; interior columns only.
 template <class T>
-void inject_nodes_row(const Plane<const T>& fine, const Plane<T>& coarse, int j) {
+[[gnu::flatten]] void inject_nodes_row(const Plane<const T>& fine, const Plane<T>& coarse, int j) {
   const T* even = fine.half(2 * j, 0);
   for (int begin = 0; begin < coarse.columns - 1; begin += kBuffer) {
     const int rest = coarse.columns - 1 - begin;
@@ -119,7 +120,7 @@ void inject_nodes_row(const Plane<const T>& fine, const Plane<T>& coarse, int j)
 
 /// Both halves of fine cell row j += the coarse cell's value: constant interpolation.
 template <class T>
-void prolong_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
+[[gnu::flatten]] void prolong_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
   T natural[kBuffer];
   for (int begin = 0; begin < coarse.columns; begin += kBuffer) {
     const int rest = coarse.columns - begin, count = rest < kBuffer ? rest : kBuffer;
@@ -137,8 +138,9 @@ void prolong_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j
 /// Coarse cell row J = sum (or mean) of the fine cells it covers; `above` null where row 2J+1 does
 /// not exist.
 template <bool kMean, class T>
-void gather_cells_row(const SplitRow<const T>& below, const SplitRow<const T>* above,
-                      int fine_columns, const Plane<T>& coarse, int j) {
+[[gnu::flatten]] void gather_cells_row(const SplitRow<const T>& below,
+                                       const SplitRow<const T>* above, int fine_columns,
+                                       const Plane<T>& coarse, int j) {
   T natural[kBuffer];
   const T rows = above ? T(2) : T(1);
   for (int begin = 0; begin < coarse.columns; begin += kBuffer) {
@@ -169,7 +171,8 @@ void gather_cells_row(const SplitRow<const T>& below, const SplitRow<const T>* a
 /// constant beyond the outermost centres. Not the transfer of the cycles: it starts a finer level
 /// of the nested iteration.
 template <class T>
-void interpolate_cells_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
+[[gnu::flatten]] void interpolate_cells_row(const Plane<const T>& coarse, const Plane<T>& fine,
+                                            int j) {
   T natural[kBuffer + 2], other[kBuffer + 2];
   const int near = j / 2, wanted = (j & 1) ? near + 1 : near - 1;
   const int far = wanted < 0 ? 0 : wanted < coarse.rows ? wanted : coarse.rows - 1;

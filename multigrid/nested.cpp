@@ -137,6 +137,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     Newton<T> newton(hierarchy, l, meter);
     newton_options.linear = linear_options(level, l == start);
     newton_options.most_steps = kLevelSteps;
+    // Two steps on the coarser levels measure the contraction that the finest may then count on.
+    newton_options.least_steps = l > 0 ? 2 : 1;
     newton_options.share_of_discretisation = kShare;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
     if (l == start) {
@@ -153,7 +155,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.tolerance_rms = options.tolerance_cells;
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
-    newton_options.expected_rate = done.rate;
+    newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
     if (l == 0 && options.exact && done.status != Status::not_finite) {
       hierarchy.drop_jump();
       ClampSchedule exact_clamp{.theta = 1.0, .most = kMostExactTheta};

@@ -19,6 +19,8 @@ constexpr double kExactTheta = 1e6;
 constexpr int kMedianSamples = 1 << 12;
 // A linear solution this bad is not worth a step with an unclamped Hessian.
 constexpr double kStagnated = 0.5;
+// Bounds of the contraction that a step is expected to have, and what is taken where none was seen.
+constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
 // So many steps in a row shorter than kCreep lead nowhere.
 constexpr double kCreep = 1e-2;
 constexpr int kMostCreeping = 5;
@@ -45,19 +47,34 @@ class Judge {
       return end(Status::stalled);
     // After a larger theta a step converges more slowly: no contraction is seen from it.
     const bool comparable = step.theta >= before.theta;
-    if (!first && full && comparable && before.step == 1.0)
-      report_.rate = std::min(0.9, step.dx_rms_px / before.dx_rms_px);
-    const double left = std::max(report_.rate, step.residual) / (1.0 - std::min(0.9, report_.rate));
+    const bool seen = !first && full && comparable && before.step == 1.0;
+    const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
+    const double left = std::max(rate, step.residual) / (1.0 - rate);
     report_.error_rms = left * step.dx_rms_px;
     report_.error_max = left * step.dx_max_px;
     // Where a step was shortened or theta lowered, one small step may be chance.
     trouble_ = trouble_ || !full || !comparable;
     settled_ = full && comparable && small(step, rounding) ? settled_ + 1 : 0;
-    if (settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
+    const bool enough = int(report_.steps.size()) >= options_.least_steps;
+    if (enough && settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
     return full && step.dx_rms_px <= rounding && end(Status::stalled);
   }
 
  private:
+  /// Contraction expected of the next step: that of the same step on the level before, made worse
+  /// by as much as this step was worse than its own; without a model, that of this step.
+  double next_rate(double seen) {
+    const std::vector<double>& expected = options_.expected_rates;
+    const std::size_t n = report_.steps.size();  // this step is the n-th
+    if (n > 1) report_.rates.push_back(seen);
+    double rate = seen;
+    if (n <= expected.size()) {
+      rate = expected[n - 1];
+      if (n > 1) rate *= std::max(1.0, seen / expected[n - 2]);
+    }
+    return std::clamp(rate, kLeastRate, kMostRate);
+  }
+
   bool small(const NewtonStep& step, double rounding) const {
     double wanted = options_.tolerance_rms;
     if (options_.share_of_discretisation > 0.0)
@@ -259,7 +276,6 @@ template <class T>
 NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
                             const std::function<void(int)>& progress) {
   NewtonReport report;
-  report.rate = options.expected_rate;
   Judge judge(options, report);
   const bool pressure = bool(level_.pressure);
   for (int n = 0; n < options.most_steps; ++n) {

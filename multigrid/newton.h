@@ -18,8 +18,11 @@ struct NewtonOptions {
   /// Besides: stop when the error left is under this share of the level's estimated discretisation
   /// error, half the RMS of all that Newton changed on the level. 0: not a criterion.
   double share_of_discretisation = 0.0;
+  int least_steps = 1;
   int most_steps = 8;
-  double expected_rate = 0.5;  ///< contraction expected of a step before two have been seen
+  /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor
+  /// is expected to do before it is taken.
+  std::vector<double> expected_rates;
   LinearOptions linear;
 };
 
@@ -28,7 +31,7 @@ struct NewtonReport {
   std::vector<NewtonStep> steps;              ///< dx in finest cells here
   double error_rms = 0.0, error_max = 0.0;    ///< estimated algebraic error left, finest cells
   double change_rms = 0.0, change_max = 0.0;  ///< all that Newton changed, finest cells
-  double rate = 0.5;                          ///< contraction observed (or handed on)
+  std::vector<double> rates;                  ///< contractions observed, for the next level
 };
 
 /// What the clamp schedule remembers from level to level.
