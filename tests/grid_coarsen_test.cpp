@@ -93,7 +93,7 @@ TEST(GridCoarsen, SharesAreLengthsRelativeToTheParent) {
 /// Coarse node values, 0 on the coarse boundary, and their bilinear interpolation at fine nodes.
 class CoarseNodes {
  public:
-  CoarseNodes(int nx, int ny) : nx_(nx), values_(std::size_t((nx + 1) * (ny + 1))) {
+  CoarseNodes(int nx, int ny) : nx_(nx), values_(std::size_t(nx + 1) * std::size_t(ny + 1)) {
     std::mt19937 random(5);
     for (int j = 1; j < ny; ++j)
       for (int i = 1; i < nx; ++i) at(i, j) = double(random()) / double(std::mt19937::max()) - 0.5;

@@ -102,8 +102,8 @@ TYPED_TEST(KernelsCuts, AConstantTractionMakesNoJump) {
   RandomLevel<T> level({.nx = 17, .ny = 9, .cuts = 40, .jump = 0.0625});
   ASSERT_FALSE(level.cuts.link.empty());
   for (int k = 0; k < level.cuts.size(); ++k) {
-    level.dq[std::size_t(2 * k)] = T(0.75) * level.cuts.length[std::size_t(k)];
-    level.dq[std::size_t(2 * k + 1)] = T(-2) * level.cuts.length[std::size_t(k)];
+    level.dq[2 * std::size_t(k)] = T(0.75) * level.cuts.length[std::size_t(k)];
+    level.dq[2 * std::size_t(k) + 1] = T(-2) * level.cuts.length[std::size_t(k)];
   }
   for (int k = 0; k < level.cuts.size(); ++k) {
     const auto m = kernels::cut_compliance<T>(level.cuts.view(), level.dq.data(), k);

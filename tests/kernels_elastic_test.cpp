@@ -96,7 +96,7 @@ EnergySums expected_sums(const RandomLevel<T>& level, const KernelOracle& oracle
       const double J = oracle::centre_J(scene, state, i, j);
       if (J < 0.0) sums.inverted_cells += 1.0;
       if (oracle.cell(i, j) < 0) continue;
-      const double kappa = scene.kappa[std::size_t(j * scene.n + i)];
+      const double kappa = scene.kappa[std::size_t(j) * std::size_t(scene.n) + std::size_t(i)];
       const double km = std::min(kappa, 100.0 * double(level.mu_value));
       const double dP = step == 0.0 ? 0.0 : d[oracle.cell(i, j)];
       const double P = oracle.state.P[j * scene.n + i] + dP, c = J - 1.0 - P / kappa;

@@ -20,7 +20,6 @@ namespace {
 
 using fields::Layout;
 using fields::LevelSpec;
-using fields::OwnedPlane;
 using fields::OwnedUnknowns;
 using fields::RandomLevel;
 using kernels::Isa;

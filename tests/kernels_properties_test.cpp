@@ -13,7 +13,6 @@
 namespace drumhead {
 namespace {
 
-using fields::Kappa;
 using fields::LevelSpec;
 using fields::OwnedPlane;
 using fields::OwnedUnknowns;

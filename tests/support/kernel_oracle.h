@@ -30,7 +30,9 @@ struct KernelOracle {
   /// Unknowns of x and y of the interior nodes for which wanted(i, j), node after node.
   std::vector<int> nodes(const std::function<bool(int, int)>& wanted) const;
   /// Unknown of P of a cell.
-  int cell(int i, int j) const { return scene.cell_unknown[std::size_t(j * scene.n + i)]; }
+  int cell(int i, int j) const {
+    return scene.cell_unknown[std::size_t(j) * std::size_t(scene.n) + std::size_t(i)];
+  }
 };
 
 template <class T>

@@ -105,6 +105,7 @@ std::vector<T> OwnedUnknowns<T>::values() const {
 template <class T>
 RandomCuts<T>::RandomCuts(const LevelSpec& spec, Random& random) : jump(T(spec.jump)) {
   std::vector<int> cells;
+  cells.reserve(std::size_t(spec.cuts));
   for (int n = 0; n < spec.cuts; ++n) cells.push_back(random.whole(0, spec.nx * spec.ny - 1));
   std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());

@@ -118,7 +118,7 @@ struct RandomLevel {
   RandomCuts<T> cuts;
   std::vector<T> dq, fq;
 
-  explicit RandomLevel(const LevelSpec& spec);
+  explicit RandomLevel(const LevelSpec& wanted);
   kernels::Membrane<T> membrane() const;
   kernels::LevelSystem<T> system();
 };
