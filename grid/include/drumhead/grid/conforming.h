@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Conforming cut cells: the second-order way to meet curves (the averaged rows of cut_cells.h are
+// first order, because a bilinear cell cannot hold the kink that a curve makes). The curves become
+// chains of chords between nodes: lattice nodes whose rest position moves onto the curve, and curve
+// nodes where a curve crosses a lattice edge. Cells that hold a chord, a curve node or a moved
+// corner are special: they are split along the chords into parts and the parts into triangles (P1).
+// All other cells stay as they are. On every lattice of a hierarchy the construction is made anew
+// from the curves.
+//
+// Rules (h: side of a cell):
+//  1. A curve is the sequence of its crossings with lattice lines; two consecutive crossings of one
+//     edge cancel. A tip of an open curve moves the nearest inner node to it.
+//  2. An inner node whose nearest crossing on its four edges lies within snap·h moves there. Nodes
+//     of the outer boundary never move. Crossings on an edge of a moved node that are not at least
+//     snap·h farther along the edge than the node became are taken over by it.
+//  3. Crossings of one edge closer than snap·h to each other become one curve node.
+//  4. Chords of different branches that cross in a cell meet in a curve node inside the cell.
+//  5. A curve that crosses nothing holds the inner node nearest to its middle.
+//  6. Where one node serves several branches, hard ones rule over soft ones; it takes the mean of
+//     their displacements (of soft ones weighted by stiffness) and their largest distance is kept
+//     as a conflict. On the outer boundary the displacement is 0.
+//  7. A cell whose parts have no triangulation of positive triangles (or more than kMostPartNodes
+//     nodes) is simplified, together with its neighbours: first its tips are given up, then its
+//     curve nodes are handed to the nearest lattice node, at last its corners stay at rest.
+// Energy of a part: mu/2 Σ A_t |F_t|² + P Σ A_t (J_t − 1) − A P²/(2 kappa): one P per side of the
+// chord. Positions and displacements are in cells of the lattice at hand, node (0, 0) at the
+// origin; displacements are deformed position − *rest position of the node*, moved or not, so that
+// F_t = 1 + Σ u_a ∇N_a everywhere.
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <drumhead/grid/curve.h>
+#include <drumhead/grid/lattice.h>
+
+namespace drumhead::grid {
+
+/// Nodes of a part at most; triangles of a part at most two fewer.
+constexpr int kMostPartNodes = 8;
+
+struct ConformOptions {
+  double snap = 0.25;  ///< in cells, (0, 0.25]
+  /// Parts of less area (in cells²) share the pressure of their largest neighbour on the same side.
+  double least_area = 0.1;
+};
+
+/// Where a curve node lies.
+enum class NodePlace {
+  on_x_edge,  ///< on the edge from node (i, j) to (i+1, j)
+  on_y_edge,  ///< on the edge from node (i, j) to (i, j+1)
+  in_cell     ///< inside cell (i, j): two branches cross there
+};
+
+/// A node that a curve holds: known if stiffness is infinite (the curve is hard, or the node lies
+/// on the outer boundary), otherwise an unknown with the energy stiffness/2 |u − wanted|².
+struct HeldNode {
+  Point rest;    ///< rest position, in cells
+  Point wanted;  ///< target − rest
+  /// d in mu per cell times half the arcs that meet here; energy in mu·cells².
+  double stiffness = std::numeric_limits<double>::infinity();
+};
+
+/// P1 triangle: a, b, c index the part's node list; gradients of the three shape functions.
+struct PartTriangle {
+  std::array<int, 3> node{};
+  double area = 0.0;  ///< > 0, in cells²
+  std::array<Point, 3> gradient{};
+};
+
+/// Several branches want one node.
+struct HeldConflict {
+  Point rest;             ///< in cells
+  double distance = 0.0;  ///< between the displacements that are wanted, in cells
+  int curve = 0, other_curve = 0;
+};
+
+/// Everything lies along the curves; lists are sorted by row, then column.
+struct ConformingCells {
+  int nx = 0, ny = 0;
+
+  // Lattice nodes that curves hold: those of node row j are [node_begin[j], node_begin[j+1]).
+  std::vector<int> node_begin;  ///< ny + 2
+  std::vector<int> node_column;
+  std::vector<HeldNode> node;
+
+  // Curve nodes: the ones on edges and in cells, in no order that means anything.
+  std::vector<HeldNode> curve_node;
+  std::vector<NodePlace> curve_place;
+  std::vector<std::array<int, 2>> curve_cell;  ///< i, j of curve_place
+
+  // Special cells: those of cell row j are [cell_begin[j], cell_begin[j+1]).
+  std::vector<int> cell_begin;  ///< ny + 1
+  std::vector<int> cell_column;
+  /// Index into `node` of corners 00, 10, 01, 11; −1: not held (at rest in its place; unknown, or
+  /// fixed on the boundary).
+  std::vector<std::array<int, 4>> cell_corner;
+  std::vector<int> part_begin;  ///< cells + 1: parts of special cell c
+
+  // Parts.
+  std::vector<int> part_node_begin;  ///< parts + 1, at most kMostPartNodes each, counter-clockwise
+  /// 0…3: corner 00, 10, 01, 11 of the cell; 4 + k: curve node k.
+  std::vector<int> part_node;
+  std::vector<int> part_triangle_begin;  ///< parts + 1
+  std::vector<PartTriangle> triangle;
+  std::vector<double> part_area;   ///< in cells²
+  std::vector<Point> part_centre;  ///< its centroid
+  /// The pressure unknown of the part, 0 … pressures−1, its own but for small parts (least_area).
+  std::vector<int> part_pressure;
+  int pressures = 0;
+
+  std::vector<HeldConflict> conflicts;  ///< farther apart than 1e-6 cells
+  int simplified_cells = 0;             ///< rule 7
+  int lost_tips = 0;                    ///< tips that hold no node (rule 7, or none was free)
+
+  int cells() const { return int(cell_column.size()); }
+  int parts() const { return int(part_area.size()); }
+  /// The special cell at (i, j), −1 if that cell is regular. Logarithmic in the row's length.
+  int find_cell(int i, int j) const;
+  /// The held lattice node at (i, j), −1 if none.
+  int find_node(int i, int j) const;
+  /// The part of special cell c that contains a point (in cells), the nearest one if none does.
+  int part_at(int c, Point at) const;
+  /// Rest position of node n of part p of special cell c in row j.
+  Point rest(int c, int j, int code) const {
+    if (code >= 4) return curve_node[std::size_t(code - 4)].rest;
+    const int held = cell_corner[std::size_t(c)][std::size_t(code)];
+    if (held >= 0) return node[std::size_t(held)].rest;
+    return {double(cell_column[std::size_t(c)] + (code & 1)), double(j + (code >> 1))};
+  }
+};
+
+/// Builds the cells that conform to the sources of `curves`. Linear in crossings and segments, and
+/// independent of the number of cells. Pairs with equally many segments are taken as they are (see
+/// `matched`). Throws std::invalid_argument naming curve, place and bound for a source that leaves
+/// the lattice, and for a weight that is not positive.
+ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
+                        const ConformOptions& options = {});
+
+/// The next coarser lattice over the same place: cells of twice the side, an odd count rounded up
+/// (the last cell overhangs the fixed edge).
+Lattice coarsened(const Lattice& fine);
+
+}  // namespace drumhead::grid
