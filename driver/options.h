@@ -3,6 +3,7 @@
 // Everything a run of `drumhead warp` can be told, and the one table of keys from which the command
 // line, the scene file, the help text and the error messages are all made: a flag --cell-size and a
 // scene's key cell_size are the same entry, with the same bound.
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -42,6 +43,10 @@ struct Options {
   bool quiet = false;
   std::vector<CurveOverride> overrides;
 };
+
+/// Every file that a run may write.
+inline constexpr std::array kOutputFiles = {&Options::output, &Options::overlay,
+                                            &Options::lattice_file, &Options::report};
 
 /// A key's value as the scene's or the command line's syntax gives it.
 using Value = std::variant<bool, std::int64_t, double, std::string>;

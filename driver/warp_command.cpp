@@ -44,9 +44,8 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 std::vector<fs::path> outputs_of(const Options& options) {
   std::vector<fs::path> outputs;
-  for (const fs::path& file :
-       {options.output, options.overlay, options.lattice_file, options.report}) {
-    if (!file.empty()) outputs.push_back(file);
+  for (const auto file : kOutputFiles) {
+    if (!(options.*file).empty()) outputs.push_back(options.*file);
   }
   return outputs;
 }
@@ -60,7 +59,8 @@ void check_files(Options& options) {
   }
   const auto outputs = outputs_of(options);
   if (outputs.empty()) {
-    throw std::invalid_argument("no output: give -o OUT, --overlay, --lattice or --report");
+    throw std::invalid_argument(
+        "no output: give -o OUT or another file to write (see drumhead --help)");
   }
   for (auto file = outputs.begin(); file != outputs.end(); ++file) {
     for (const fs::path& input : {options.picture, options.curves, options.scene}) {

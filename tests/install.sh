@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs the Debian 12 packages that are missing, as root or with sudo:
-#   sh tests/install.sh        what the release preset builds and runs (driver/demo.sh and tests/run.sh)
-#   sh tests/install.sh all    also the presets clang and tsan, and tests/tidy.sh
+#   sh tests/install.sh         what the release preset builds with, which is all that driver/demo.sh needs
+#   sh tests/install.sh tests   also the programs that the tests hand our files to (tests/run.sh)
+#   sh tests/install.sh all     also the presets clang and tsan, and tests/tidy.sh
 # Where nothing is missing, it uses no network and no privileges.
 set -eu
 
@@ -14,6 +15,9 @@ packages="
   nlohmann-json3-dev lib2geom-dev libboost-dev libcairo2-dev librsvg2-bin
   libgtest-dev
   libbenchmark-dev"
+case ${1:-} in
+  tests | all) packages="$packages chromium-headless-shell" ;;
+esac
 if [ "${1:-}" = all ]; then
   packages="$packages clang-14 libomp-14-dev clang-format-14 clang-tidy-14"
 fi

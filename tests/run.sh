@@ -4,7 +4,7 @@
 #   sh tests/run.sh unit numeric   only these labels (unit, numeric, slow)
 set -eu
 cd "$(dirname "$0")/.."
-sh tests/install.sh
+sh tests/install.sh tests
 cmake --preset release
 cmake --build --preset release
 labels=$(echo "$*" | tr ' ' '|')

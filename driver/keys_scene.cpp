@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+
+#include "keys.h"
+
+namespace drumhead::driver {
+namespace {
+
+constexpr int kMostCells = 16384;
+constexpr int kMostThreads = 4096;
+
+bool set_cells(const Value& value, Options& o) {
+  if (!set_whole(value, kMostCells, o.lattice.cells)) return false;
+  o.lattice.cell_px = 0.0;  // a flag --cells overrules the scene's cell_size
+  return true;
+}
+
+bool set_margin(const Value& value, Options& o) {
+  const auto x = finite_number(value);
+  if (!x || *x < 0) return false;
+  o.lattice.margin = *x;
+  return true;
+}
+
+bool set_model(const Value& value, Options& o) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (!text || (*text != "crpm" && *text != "harmonic")) return false;
+  o.model = *text;
+  return true;
+}
+
+bool set_kappa(const Value& value, Options& o) {
+  const auto x = number(value);
+  if (!x || *x < 0) return false;
+  o.kappa = *x;
+  return true;
+}
+
+bool set_weight(const Value& value, Options& o) {
+  const auto x = weight_of(value);
+  if (x) o.weight = *x;
+  return x.has_value();
+}
+
+bool set_tolerance(const Value& value, Options& o) {
+  if (const auto* text = std::get_if<std::string>(&value); text && *text == "auto") {
+    o.tolerance_px = 0.0;
+    return true;
+  }
+  return set_positive(value, o.tolerance_px);
+}
+
+const std::array kKeys = {
+    Key{.name = "picture",
+        .value = "",
+        .bound = kAnyPath,
+        .help = "PNG, JPEG, TIFF, EXR …, turned upright as its EXIF says; .svg is rasterised",
+        .set = set_file<&Options::picture>,
+        .flag = false,
+        .path = true},
+    Key{.name = "curves",
+        .value = "",
+        .bound = kAnyPath,
+        .help = "SVG with the layers source, target and pin",
+        .set = set_file<&Options::curves>,
+        .flag = false,
+        .path = true},
+    Key{.name = "cells",
+        .value = "N",
+        .bound = "a whole number from 1 to 16384",
+        .help = "cells across the longer side of the picture",
+        .fallback = "256",
+        .set = set_cells},
+    Key{.name = "cell_size",
+        .value = "PX",
+        .bound = "a finite number above 0",
+        .help = "side of a cell in picture pixels, instead of --cells",
+        .set = [](const Value& v, Options& o) { return set_positive(v, o.lattice.cell_px); }},
+    Key{.name = "margin",
+        .value = "FRACTION",
+        .bound = "a finite number, 0 or above",
+        .help =
+            "margin on every side, as a fraction of the longer side; 0 holds the picture's edge",
+        .fallback = "0.1",
+        .set = set_margin},
+    Key{.name = "model",
+        .value = "M",
+        .bound = "one of: crpm, harmonic",
+        .help = "membrane: crpm, or harmonic, which is crpm with kappa 0",
+        .fallback = "crpm",
+        .set = set_model},
+    Key{.name = "mu",
+        .value = "V",
+        .bound = "a finite number above 0",
+        .help = "stiffness, the unit of --kappa and --weight",
+        .fallback = "1",
+        .set = [](const Value& v, Options& o) { return set_positive(v, o.mu); }},
+    Key{.name = "kappa",
+        .value = "V",
+        .bound = "a number, 0 or above, or inf",
+        .help = "resistance to change of area, in units of mu; inf: incompressible",
+        .fallback = "1",
+        .set = set_kappa},
+    Key{.name = "weight",
+        .value = "D",
+        .bound = "a number above 0, or inf",
+        .help =
+            "stiffness of the curves per length, in units of mu per longer side of the picture; "
+            "inf: they are met exactly, as pins always are",
+        .fallback = "inf",
+        .set = set_weight},
+    Key{.name = "exact",
+        .value = "",
+        .bound = "true or false",
+        .help = "curves met to rounding, in double precision; slower",
+        .set = [](const Value& v, Options& o) { return set_switch(v, o.exact); }},
+    Key{.name = "tolerance",
+        .value = "PX",
+        .bound = "a finite number above 0, or auto",
+        .help = "error that the solver may leave, RMS in picture pixels; auto: a tenth of the "
+                "lattice's own error",
+        .fallback = "auto",
+        .set = set_tolerance},
+    Key{.name = "threads",
+        .value = "N",
+        .bound = "a whole number from 1 to 4096",
+        .help = "processor threads",
+        .fallback = "as OpenMP decides",
+        .set = [](const Value& v, Options& o) { return set_whole(v, kMostThreads, o.threads); }},
+};
+
+}  // namespace
+
+std::span<const Key> scene_keys() { return kKeys; }
+
+}  // namespace drumhead::driver
