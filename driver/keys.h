@@ -9,6 +9,9 @@ namespace drumhead::driver {
 /// Pictures, lattice, membrane, solver.
 std::span<const Key> scene_keys();
 
+/// Where mu and kappa vary.
+std::span<const Key> mask_keys();
+
 /// How the warped picture is made, and what is written.
 std::span<const Key> output_keys();
 

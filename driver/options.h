@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <drumhead/grid/lattice.h>
+#include <drumhead/grid/mask.h>
 #include <drumhead/grid/material.h>
 
 namespace drumhead::driver {
@@ -27,6 +28,13 @@ struct CurveOverride {
   std::string place;                   ///< file and line, for errors
 };
 
+/// A grey picture for a coefficient; nothing: as its key's fallback says.
+struct MaskOptions {
+  std::filesystem::path file;          ///< empty: the coefficient is constant
+  std::optional<double> black, white;  ///< factors of mu; kappa in units of mu
+  std::optional<grid::MaskScale> scale;
+};
+
 struct Options {
   std::filesystem::path scene;    ///< the scene file, where there is one
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
@@ -35,7 +43,8 @@ struct Options {
   grid::LatticeOptions lattice;
   std::string model = "crpm";  ///< crpm or harmonic
   double mu = grid::Material{}.mu;
-  double kappa = grid::Material{}.kappa;                    ///< in units of mu
+  double kappa = grid::Material{}.kappa;  ///< in units of mu
+  MaskOptions mu_mask, kappa_mask;
   double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own
   bool exact = false;
   double tolerance_px = 0.0;  ///< 0: a tenth of the estimated discretisation error

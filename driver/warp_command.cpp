@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "curve_settings.h"
 #include "image.h"
+#include "masks.h"
 #include "overlay.h"
 #include "progress.h"
 #include "render.h"
@@ -63,7 +64,8 @@ void check_files(Options& options) {
         "no output: give -o OUT or another file to write (see drumhead --help)");
   }
   for (auto file = outputs.begin(); file != outputs.end(); ++file) {
-    for (const fs::path& input : {options.picture, options.curves, options.scene}) {
+    for (const fs::path& input : {options.picture, options.curves, options.scene,
+                                  options.mu_mask.file, options.kappa_mask.file}) {
       if (!input.empty() && same_file(*file, input)) {
         throw std::invalid_argument(file->string() + ": an output must not replace an input");
       }
@@ -82,6 +84,7 @@ multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
   problem.lattice = grid::make_lattice(picture.width(), picture.height(), options.lattice);
   problem.material.mu = options.mu;
   problem.material.kappa = options.model == "harmonic" ? 0.0 : options.kappa;
+  apply_masks(options, picture.width(), picture.height(), problem.lattice, problem.material);
   check_inside(problem.lattice, curves);
   problem.curves = apply_settings(options, curves);
   return problem;

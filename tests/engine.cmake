@@ -19,7 +19,7 @@ foreach(name fused isa properties reduce threads transfer)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_fields LABEL unit)
 endforeach()
-foreach(name coarsen curve cut_cells field lattice material)
+foreach(name coarsen curve cut_cells field lattice mask material)
   drumhead_test(NAME grid_${name}_test SOURCES grid_${name}_test.cpp
     LINK drumhead::grid LABEL unit)
 endforeach()
