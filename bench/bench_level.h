@@ -7,12 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <numbers>
 #include <vector>
 
 #include <drumhead/grid/cut_cells.h>
 #include <drumhead/grid/field.h>
-#include <drumhead/kernels/relax.h>
+#include <drumhead/kernels/kaczmarz.h>
 
 namespace drumhead::bench {
 
@@ -45,8 +46,10 @@ class BenchLevel {
         out(n, n, true, meter_),
         coarse_d((n + 1) / 2, (n + 1) / 2, true, meter_),
         coarse_f((n + 1) / 2, (n + 1) / 2, true, meter_),
+        e(n, n, true, meter_),
         scratch(n + 1, kMostThreads),
-        n(n) {
+        n(n),
+        alpha2_(n, n, meter_) {
     fill(ux_.view(), 1, 0.2);
     fill(uy_.view(), 2, 0.2);
     fill(pressure_.view(), 3, 1.5);  // the clamp at 1 acts on a third of the cells
@@ -91,6 +94,14 @@ class BenchLevel {
             .f = f.view(),
             .dq = dq.data(),
             .fq = fq.data()};
+  }
+  /// With the curve rows of the circle and balanced α, β.
+  kernels::KaczmarzSystem<T> kaczmarz(T omega) {
+    return {.level = system(true),
+            .nodes = nodes_->view(),
+            .alpha2 = alpha2_.view(),
+            .beta2 = beta2_.data(),
+            .omega = omega};
   }
   /// All that kernels write, bit by bit.
   std::vector<std::uint64_t> digest() const {
@@ -138,6 +149,10 @@ class BenchLevel {
       }
     dq.assign(2 * length_.size(), T(0));
     fq.assign(2 * length_.size(), T(0.01));
+    eq.assign(4 * length_.size(), T(0));
+    nodes_ = std::make_unique<kernels::CurveNodes<T>>(n, n, curve());
+    beta2_.resize(length_.size());
+    kernels::balance_rows<T>(membrane(), curve(), alpha2_.view(), beta2_.data());
   }
 
   grid::MemoryMeter meter_;
@@ -148,8 +163,15 @@ class BenchLevel {
  public:
   grid::UnknownFields<T> d, f, out, coarse_d, coarse_f;
   std::vector<T> dq, fq;
+  grid::UnknownFields<T> e;  ///< of damped Kaczmarz
+  std::vector<T> eq;
   kernels::RowScratch<T> scratch;
   int n;
+
+ private:
+  grid::Field<T> alpha2_;
+  std::vector<T> beta2_;
+  std::unique_ptr<kernels::CurveNodes<T>> nodes_;
 };
 
 }  // namespace drumhead::bench

@@ -86,6 +86,22 @@ std::vector<Kernel<T>> relaxations() {
            }}};
 }
 
+/// The paper's relaxations (kernels/kaczmarz.h), with the curve rows of a circle.
+template <class T>
+std::vector<Kernel<T>> kaczmarz() {
+  using Level = BenchLevel<T>;
+  return {{"damped Kaczmarz",
+           {7, 3, 3},
+           [](Level& l) {
+             kernels::damped_kaczmarz<T>(l.kaczmarz(T(0.375)), l.e.view(), l.eq.data());
+             return 0.0;
+           }},
+          {"coloured Kaczmarz", {7, 0, 3}, [](Level& l) {
+             kernels::coloured_kaczmarz<T>(l.kaczmarz(T(1.45)), kernels::Reach::everywhere);
+             return 0.0;
+           }}};
+}
+
 template <class T>
 std::vector<Kernel<T>> operators() {
   using Level = BenchLevel<T>;
@@ -271,6 +287,7 @@ void register_all() {
       add(product<float>(), size, isa, 1);
       for (const auto& kernel : operators<float>()) add(kernel, size, isa, 1, true);
       for (const auto& kernel : relaxations<float>()) add(kernel, size, isa, 1, true);
+      for (const auto& kernel : kaczmarz<float>()) add(kernel, size, isa, 1, true);
       for (const auto& kernel : fields<float>()) add(kernel, size, isa, 1);
     }
     const Isa best = kernels::available_isas().back();

@@ -26,15 +26,14 @@ void scatter(const T* w, T value, const Plane<T>& f, int i, int j) {
   f.at(i + 1, j + 1) += w[3] * value;
 }
 
-/// M_kk.
+}  // namespace
+
 template <class T>
-T diagonal(const Cuts<T>& cuts, int k) {
+T cut_compliance_diagonal(const Cuts<T>& cuts, int k) {
   T sum = T(0);
   for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l) sum += cuts.link_strength[l];
   return cuts.compliance[k] + cuts.jump * sum / (cuts.length[k] * cuts.length[k]);
 }
-
-}  // namespace
 
 template <class T>
 Pair<T> cut_compliance(const Cuts<T>& cuts, const T* q, int k) {
@@ -95,7 +94,8 @@ void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g
       for (T& value : inverse) value = T(1) / (T(4) * membrane.mu.value);
     }
     const T s = (w[0] * w[0] * inverse[0] + w[1] * w[1] * inverse[1]) +
-                (w[2] * w[2] * inverse[2] + w[3] * w[3] * inverse[3]) + diagonal(cuts, k);
+                (w[2] * w[2] * inverse[2] + w[3] * w[3] * inverse[3]) +
+                cut_compliance_diagonal(cuts, k);
     const T move[4] = {w[0] * inverse[0], w[1] * inverse[1], w[2] * inverse[2], w[3] * inverse[3]};
     const Pair<T> m = cut_compliance(cuts, dq, k);
     const T tx = -(g[2 * k] + (average<T>(cuts, d.x, k, i, j) + m.x)) / s;
@@ -110,6 +110,7 @@ void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g
 }
 
 #define DRUMHEAD_INSTANTIATE(T)                                                                  \
+  template T cut_compliance_diagonal(const Cuts<T>&, int);                                       \
   template Pair<T> cut_compliance(const Cuts<T>&, const T*, int);                                \
   template void add_curve_force(const Cuts<T>&, const T*, T, const Unknowns<T>&);                \
   template void apply_cuts(const Cuts<T>&, const Unknowns<const T>&, const T*, T*);              \

@@ -2,6 +2,7 @@
 // Compiled once per instruction set, with DRUMHEAD_ISA_NAMESPACE and DRUMHEAD_ISA_LEVEL set by the
 // build: 0 scalar (auto-vectoriser off), 1 SSE2, 2 AVX2, 3 AVX-512.
 #include "energy_body.h"
+#include "kaczmarz_body.h"
 #include "kernel_table.h"
 #include "reduce_body.h"
 #include "relax_body.h"
@@ -21,6 +22,12 @@ constexpr KernelTable<T> make_table() {
       .energy = energy_row<T>,
       .relax_nodes = relax_nodes_row<T>,
       .relax_volume = relax_volume_row<T>,
+      .kaczmarz_nodes = kaczmarz_nodes_row<T>,
+      .kaczmarz_cells = kaczmarz_cells_row<T>,
+      .jacobi_nodes = jacobi_nodes_row<T>,
+      .jacobi_cells = jacobi_cells_row<T>,
+      .jacobi_pressures = jacobi_pressures_row<T>,
+      .balance_cells = balance_cells_row<T>,
       .prolong_nodes = prolong_nodes_row<false, T>,
       .add_prolonged_nodes = prolong_nodes_row<true, T>,
       .restrict_nodes = restrict_nodes_row<T>,

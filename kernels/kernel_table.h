@@ -3,6 +3,7 @@
 // The row kernels of one instruction set. isa_table.cpp fills one table per instruction set and
 // number type; the public functions call through the table that was chosen for this processor.
 #include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/kaczmarz.h>
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -28,6 +29,13 @@ struct KernelTable {
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
   void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
                        int j);
+
+  void (*kaczmarz_nodes)(const KaczmarzSystem<T>&, Reach, int j);
+  void (*kaczmarz_cells)(const KaczmarzSystem<T>&, Reach, int parity, int j);
+  void (*jacobi_nodes)(const KaczmarzSystem<T>&, const Fields& e, int j);
+  void (*jacobi_cells)(const KaczmarzSystem<T>&, const Fields& e, int j);
+  void (*jacobi_pressures)(const KaczmarzSystem<T>&, const ConstFields& e, int j);
+  void (*balance_cells)(const Membrane<T>&, const Plane<T>& alpha2, int j);
 
   void (*prolong_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
   void (*add_prolonged_nodes)(const Plane<const T>& coarse, const Plane<T>& fine, int j);

@@ -5,13 +5,14 @@ target_include_directories(drumhead_fields PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 drumhead_compile_settings(drumhead_fields)
 target_link_libraries(drumhead_fields PUBLIC drumhead::kernels)
 
-add_library(drumhead_kernel_oracle STATIC support/kernel_oracle.cpp)
+add_library(drumhead_kernel_oracle STATIC
+  support/kernel_oracle.cpp support/oracle_kaczmarz.cpp)
 drumhead_compile_settings(drumhead_kernel_oracle)
 # Sparse products of Eigen are many times slower without the optimiser; assertions stay on in debug.
 target_compile_options(drumhead_kernel_oracle PRIVATE -O2)
 target_link_libraries(drumhead_kernel_oracle PUBLIC drumhead_fields drumhead_oracle)
 
-foreach(name cuts elastic relax)
+foreach(name cuts elastic kaczmarz relax)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_kernel_oracle LABEL unit)
 endforeach()

@@ -30,6 +30,9 @@ struct Pair {
 };
 template <class T>
 Pair<T> cut_compliance(const Cuts<T>& cuts, const T* q, int k);
+/// M_kk.
+template <class T>
+T cut_compliance_diagonal(const Cuts<T>& cuts, int k);
 
 /// D-weighted Kaczmarz on the curve rows of cell row j, one after the other (backwards if
 /// `reverse`): r = g + W d + M dq, s = Σ w_i²/K_ii + M_kk, d_i −= w_i r/(s K_ii), dq −= r/s, f −=
