@@ -33,7 +33,13 @@ relative to the scene file.
 
 Coordinates. Picture pixels, continuous: 0 at the left and top edge, pixel centres at 1/2, x right,
 y down. The lattice covers the picture and its margin, and its outer edge does not move. --lattice
-writes (nx+1) x (ny+1) pixels, one a node.
+writes (nx+1) x (ny+1) pixels, one a node, --lattice-cells nx x ny, one a cell.
+
+Maps. float32 EXR, channels R, G, of the position (x, y) in the picture of W x H pixels:
+st R = x/W, G = 1 - y/H; pixel R = x - 1/2, G = y - 1/2; displacement: (x, y) minus the centre of
+the map's pixel. Where the output is folded, a point with positive area wins. The report's
+round_trip_px is the distance of forward(backward(pixel)) from the pixel, through the warp itself
+and (sampled) through the forward map's pixels.
 
 Exit code. 0 converged; 1 not converged, the best result is written; 2 bad input, nothing is
 written.

@@ -192,14 +192,4 @@ void write_image(Image image, const std::filesystem::path& file) {
   write_pixels(*output, image.spec, image.pixels, file);
 }
 
-void write_float_exr(int width, int height, const std::vector<std::string>& channels,
-                     const std::vector<float>& pixels, const std::filesystem::path& file) {
-  OIIO::ImageSpec spec(width, height, int(channels.size()), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = channels;
-  spec.attribute("compression", "zip");
-  const auto output = OIIO::ImageOutput::create("openexr");
-  if (!output) fail_to_write(file, OIIO::geterror());
-  write_pixels(*output, spec, pixels, file);
-}
-
 }  // namespace drumhead::driver

@@ -30,8 +30,4 @@ void check_writable_format(const std::filesystem::path& file);
 /// naming `file`.
 void write_image(Image image, const std::filesystem::path& file);
 
-/// Writes float32 pixels of named channels as EXR. Throws std::runtime_error naming `file`.
-void write_float_exr(int width, int height, const std::vector<std::string>& channels,
-                     const std::vector<float>& pixels, const std::filesystem::path& file);
-
 }  // namespace drumhead::driver

@@ -12,6 +12,9 @@ std::span<const Key> scene_keys();
 /// Where mu and kappa vary.
 std::span<const Key> mask_keys();
 
+/// The warp and its lattice for other programs.
+std::span<const Key> map_keys();
+
 /// How the warped picture is made, and what is written.
 std::span<const Key> output_keys();
 

@@ -21,13 +21,6 @@ const std::array kKeys = {
         .help = "the warped picture under the deformed lattice, warped curves and targets",
         .set = [](const Value& v, Options& o) { return set_path(v, ".png", o.overlay); },
         .path = true},
-    Key{.name = "lattice",
-        .value = "EXR",
-        .bound = "the path of an .exr file",
-        .help = "displacement of every lattice node: float channels u, v in picture pixels, first "
-                "row the top",
-        .set = [](const Value& v, Options& o) { return set_path(v, ".exr", o.lattice_file); },
-        .path = true},
     Key{.name = "report",
         .value = "JSON",
         .bound = kAnyPath,

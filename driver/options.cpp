@@ -62,8 +62,10 @@ std::optional<double> weight_of(const Value& value) {
 std::span<const Key> keys() {
   static const std::vector<Key> all = [] {
     std::vector<Key> tables;
-    for (const std::span<const Key> table : {scene_keys(), mask_keys(), output_keys()})
+    for (const std::span<const Key> table :
+         {scene_keys(), mask_keys(), map_keys(), output_keys()}) {
       tables.insert(tables.end(), table.begin(), table.end());
+    }
     return tables;
   }();
   return all;

@@ -18,6 +18,8 @@
 #include <drumhead/grid/mask.h>
 #include <drumhead/grid/material.h>
 
+#include "maps.h"
+
 namespace drumhead::driver {
 
 /// What a scene says about single curves ([[curve]]).
@@ -39,7 +41,9 @@ struct Options {
   std::filesystem::path scene;    ///< the scene file, where there is one
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
   std::filesystem::path curves;  ///< SVG; the picture itself where that is an SVG and this is empty
-  std::filesystem::path output, overlay, lattice_file, report;  ///< empty: not written
+  std::filesystem::path output, overlay, report;  ///< empty: not written, as the next
+  std::filesystem::path backward_map, forward_map, lattice_file, lattice_cells, lattice_vtk;
+  MapConvention map_convention = MapConvention::st;
   grid::LatticeOptions lattice;
   std::string model = "crpm";  ///< crpm or harmonic
   double mu = grid::Material{}.mu;
@@ -54,8 +58,9 @@ struct Options {
 };
 
 /// Every file that a run may write.
-inline constexpr std::array kOutputFiles = {&Options::output, &Options::overlay,
-                                            &Options::lattice_file, &Options::report};
+inline constexpr std::array kOutputFiles = {
+    &Options::output,      &Options::overlay,      &Options::report,        &Options::backward_map,
+    &Options::forward_map, &Options::lattice_file, &Options::lattice_cells, &Options::lattice_vtk};
 
 /// A key's value as the scene's or the command line's syntax gives it.
 using Value = std::variant<bool, std::int64_t, double, std::string>;

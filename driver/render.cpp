@@ -65,14 +65,4 @@ Image render(const Image& picture, const multigrid::Solution& solution, int thre
   return warped;
 }
 
-void write_lattice(const multigrid::Solution& solution, const std::filesystem::path& file) {
-  std::vector<float> pixels;
-  pixels.reserve(2 * solution.u_px.size());
-  for (std::size_t k = 0; k < solution.u_px.size(); ++k) {
-    pixels.push_back(float(solution.u_px[k]));
-    pixels.push_back(float(solution.v_px[k]));
-  }
-  write_float_exr(solution.lattice.nx + 1, solution.lattice.ny + 1, {"u", "v"}, pixels, file);
-}
-
 }  // namespace drumhead::driver

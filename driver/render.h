@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The picture through the solution, and the solution as an array of pixels.
+// The picture through the solution.
 #include <drumhead/kernels/resample.h>
 #include <drumhead/multigrid/warp.h>
 
@@ -14,9 +14,5 @@ kernels::LatticeMapView map_of(const multigrid::Solution& solution);
 /// The warped picture, of the picture's size. Beyond its edge the picture goes on with its edge
 /// pixels. The filter overshoots at edges; each channel is clamped to the range that it had.
 Image render(const Image& picture, const multigrid::Solution& solution, int threads);
-
-/// Float32 EXR of (nx+1) × (ny+1) pixels, first row j = 0, channels u, v: displacement in picture
-/// pixels.
-void write_lattice(const multigrid::Solution& solution, const std::filesystem::path& file);
 
 }  // namespace drumhead::driver

@@ -64,49 +64,62 @@ Json memory_json(const multigrid::Solution& solution) {
           {"peak_rss_bytes", std::int64_t(usage.ru_maxrss) * 1024}};
 }
 
+Json maps_json(const MapReport& maps) {
+  const Frame& frame = maps.format.frame;
+  const RoundTrip& round_trip = maps.round_trip;
+  return {{"convention", name(maps.format.convention)},
+          {"frame", {frame.left, frame.top, frame.width, frame.height}},
+          {"round_trip_px",
+           {{"rms", finite(round_trip.rms_px)},
+            {"max", finite(round_trip.max_px)},
+            {"sampled_rms", finite(round_trip.sampled_rms_px)},
+            {"sampled_max", finite(round_trip.sampled_max_px)}}}};
+}
+
 }  // namespace
 
 std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Seconds& seconds) {
+                        const Seconds& seconds, const std::optional<MapReport>& maps) {
   const multigrid::SolveReport& report = solution.report;
   const grid::Lattice& lattice = solution.lattice;
   const multigrid::EnergyReport& energy = report.energy;
-  const Json json = {{"version", DRUMHEAD_VERSION},
-                     {"status", multigrid::name(report.status)},
-                     {"model", model},
-                     {"exact", report.exact},
-                     {"lattice",
-                      {{"nx", lattice.nx},
-                       {"ny", lattice.ny},
-                       {"cell_px", finite(lattice.cell_px)},
-                       {"origin_px", position(lattice.origin_px)},
-                       {"levels", report.lattice_levels}}},
-                     {"levels", levels_json(report)},
-                     {"work_units", finite(report.work_units)},
-                     {"work_unit_seconds", finite(report.work_unit_seconds)},
-                     {"error_px",
-                      {{"algebraic_rms", finite(report.algebraic_rms_px)},
-                       {"algebraic_max", finite(report.algebraic_max_px)},
-                       {"discretisation_rms", finite(report.discretisation_rms_px)},
-                       {"discretisation_max", finite(report.discretisation_max_px)}}},
-                     {"curves", curves_json(report)},
-                     {"folds", folds_json(report.folds)},
-                     {"energy",
-                      {{"total", finite(energy.total)},
-                       {"elastic", finite(energy.elastic)},
-                       {"volume", finite(energy.volume)},
-                       {"constraint", finite(energy.constraint)}}},
-                     {"seconds",
-                      {{"read", finite(seconds.read)},
-                       {"cut", finite(seconds.cut)},
-                       {"solve", finite(seconds.solve)},
-                       {"render", finite(seconds.render)},
-                       {"write", finite(seconds.write)},
-                       {"total", finite(seconds.total)}}},
-                     {"memory", memory_json(solution)},
-                     {"isa", report.isa},
-                     {"threads", report.threads},
-                     {"notes", report.notes}};
+  Json json = {{"version", DRUMHEAD_VERSION},
+               {"status", multigrid::name(report.status)},
+               {"model", model},
+               {"exact", report.exact},
+               {"lattice",
+                {{"nx", lattice.nx},
+                 {"ny", lattice.ny},
+                 {"cell_px", finite(lattice.cell_px)},
+                 {"origin_px", position(lattice.origin_px)},
+                 {"levels", report.lattice_levels}}},
+               {"levels", levels_json(report)},
+               {"work_units", finite(report.work_units)},
+               {"work_unit_seconds", finite(report.work_unit_seconds)},
+               {"error_px",
+                {{"algebraic_rms", finite(report.algebraic_rms_px)},
+                 {"algebraic_max", finite(report.algebraic_max_px)},
+                 {"discretisation_rms", finite(report.discretisation_rms_px)},
+                 {"discretisation_max", finite(report.discretisation_max_px)}}},
+               {"curves", curves_json(report)},
+               {"folds", folds_json(report.folds)},
+               {"energy",
+                {{"total", finite(energy.total)},
+                 {"elastic", finite(energy.elastic)},
+                 {"volume", finite(energy.volume)},
+                 {"constraint", finite(energy.constraint)}}},
+               {"seconds",
+                {{"read", finite(seconds.read)},
+                 {"cut", finite(seconds.cut)},
+                 {"solve", finite(seconds.solve)},
+                 {"render", finite(seconds.render)},
+                 {"write", finite(seconds.write)},
+                 {"total", finite(seconds.total)}}},
+               {"memory", memory_json(solution)},
+               {"isa", report.isa},
+               {"threads", report.threads},
+               {"notes", report.notes}};
+  if (maps) json["maps"] = maps_json(*maps);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

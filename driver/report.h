@@ -4,7 +4,10 @@
 // not finite are written as null (an exact Hessian's theta is one).
 #include <drumhead/multigrid/warp.h>
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "maps.h"
 
 namespace drumhead::driver {
 
@@ -12,9 +15,15 @@ struct Seconds {
   double read = 0.0, cut = 0.0, solve = 0.0, render = 0.0, write = 0.0, total = 0.0;
 };
 
-/// `model` as the user named it.
+/// The maps that were written.
+struct MapReport {
+  MapFormat format;
+  RoundTrip round_trip;
+};
+
+/// `model` as the user named it; the key "maps" is there only with `maps`.
 std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Seconds& seconds);
+                        const Seconds& seconds, const std::optional<MapReport>& maps);
 
 /// Throws std::runtime_error naming `file`.
 void write_report(const std::string& json, const std::filesystem::path& file);

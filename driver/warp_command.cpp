@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "curve_settings.h"
 #include "image.h"
+#include "lattice_files.h"
 #include "masks.h"
 #include "overlay.h"
 #include "progress.h"
@@ -106,6 +107,30 @@ class Outputs {
   std::map<fs::path, AtomicFile> files_;
 };
 
+void write_lattice_files(const Options& options, const multigrid::Solution& solution,
+                         const Outputs& outputs) {
+  if (!options.lattice_file.empty()) write_lattice(solution, outputs[options.lattice_file]);
+  if (!options.lattice_cells.empty()) write_lattice_cells(solution, outputs[options.lattice_cells]);
+  if (!options.lattice_vtk.empty()) write_lattice_vtk(solution, outputs[options.lattice_vtk]);
+}
+
+/// What the report says of the maps; nothing if none was asked for, or no report.
+std::optional<MapReport> write_maps(const Options& options, const Image& picture,
+                                    const multigrid::Solution& solution, const Outputs& outputs) {
+  const kernels::LatticeMapView map = map_of(solution);
+  const int width = picture.width(), height = picture.height(), threads = options.threads;
+  const MapFormat format{options.map_convention, width, height, {0, 0, width, height}};
+  if (!options.backward_map.empty()) {
+    write_backward_map(map, format, threads, outputs[options.backward_map]);
+  }
+  if (!options.forward_map.empty()) {
+    write_forward_map(map, format, threads, outputs[options.forward_map]);
+  }
+  const bool none = options.backward_map.empty() && options.forward_map.empty();
+  if (none || options.report.empty()) return {};
+  return MapReport{format, round_trip(map, format, threads)};
+}
+
 }  // namespace
 
 int run_warp(Options options) {
@@ -148,11 +173,12 @@ int run_warp(Options options) {
     write_overlay(warped, solution, drawing.curves, outputs[options.overlay]);
   }
   if (!options.output.empty()) write_image(std::move(warped), outputs[options.output]);
-  if (!options.lattice_file.empty()) write_lattice(solution, outputs[options.lattice_file]);
+  write_lattice_files(options, solution, outputs);
+  const auto maps = write_maps(options, picture, solution, outputs);
   seconds.write = watch.lap();
   seconds.total = whole.lap();
   if (!options.report.empty()) {
-    write_report(report_json(solution, options.model, seconds), outputs[options.report]);
+    write_report(report_json(solution, options.model, seconds, maps), outputs[options.report]);
   }
   outputs.commit();
 

@@ -140,4 +140,14 @@ Position forward_position(const LatticeMapView& map, Position rest_px) {
   return {rest_px.x + blend(map.u), rest_px.y + blend(map.v)};
 }
 
+void forward_map(const LatticeMapView& map, const ForwardMapTarget& out, int threads) {
+  check(map);
+  for_each_task(out.height, threads, [&](int b, int) {
+    Position* row = out.output + b * out.row_stride;
+    for (int a = 0; a < out.width; ++a) {
+      row[a] = forward_position(map, {out.left + a + 0.5, out.top + b + 0.5});
+    }
+  });
+}
+
 }  // namespace drumhead::kernels

@@ -2,7 +2,6 @@
 #include "analysis.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace drumhead::multigrid {
@@ -55,24 +54,26 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
   return reports;
 }
 
+CellJ cell_J(const Solution& s, int i, int j) {
+  const double h = s.lattice.cell_px;
+  const std::size_t row = std::size_t(s.lattice.nx) + 1, k = std::size_t(j) * row + std::size_t(i);
+  auto node = [&](std::size_t n, double x, double y) {
+    return grid::Point{x + s.u_px[n] / h, y + s.v_px[n] / h};
+  };
+  const grid::Point p00 = node(k, 0, 0), p10 = node(k + 1, 1, 0), p01 = node(k + row, 0, 1),
+                    p11 = node(k + row + 1, 1, 1);
+  return {0.5 * grid::cross(p11 - p00, p01 - p10),
+          std::min({grid::cross(p10 - p00, p01 - p00), grid::cross(p10 - p00, p11 - p10),
+                    grid::cross(p11 - p01, p01 - p00), grid::cross(p11 - p01, p11 - p10)})};
+}
+
 FoldReport find_folds(const Solution& s) {
   FoldReport folds;
   folds.min_J = folds.min_corner_J = 1.0;
   const double h = s.lattice.cell_px;
-  const std::size_t row = std::size_t(s.lattice.nx) + 1;
   for (int j = 0; j < s.lattice.ny; ++j)
     for (int i = 0; i < s.lattice.nx; ++i) {
-      const std::size_t k = std::size_t(j) * row + std::size_t(i);
-      auto node = [&](std::size_t n, double x, double y) {
-        return grid::Point{x + s.u_px[n] / h, y + s.v_px[n] / h};
-      };
-      const grid::Point p00 = node(k, 0, 0), p10 = node(k + 1, 1, 0), p01 = node(k + row, 0, 1),
-                        p11 = node(k + row + 1, 1, 1);
-      const double centre = 0.5 * grid::cross(p11 - p00, p01 - p10);
-      const std::array<double, 4> corner{
-          grid::cross(p10 - p00, p01 - p00), grid::cross(p10 - p00, p11 - p10),
-          grid::cross(p11 - p01, p01 - p00), grid::cross(p11 - p01, p11 - p10)};
-      const double least = *std::ranges::min_element(corner);
+      const auto [centre, least] = cell_J(s, i, j);
       folds.min_J = std::min(folds.min_J, centre);
       folds.min_corner_J = std::min(folds.min_corner_J, least);
       folds.inverted_cells += centre < 0.0;

@@ -53,6 +53,27 @@ TEST_F(DriverCommand, RefusesBrokenPathData) {
                  {"bad.svg:2: path 'p7': broken path data at 'x9'"});
 }
 
+TEST_F(DriverCommand, RefusesHalfFloatMapsAndSaysWhy) {
+  expect_refused(
+      {"warp", "photo.png", "curves.svg", "--backward-map", "b.exr", "--map-depth", "half"},
+      {"--map-depth half: must be float", "half keeps 11"});
+  scratch.write("scene.toml",
+                "picture = \"photo.png\"\ncurves = \"curves.svg\"\nmap_depth = \"half\"\n");
+  expect_refused({"warp", "scene.toml"}, {"scene.toml:3: map_depth", "must be float"});
+}
+
+TEST_F(DriverCommand, RefusesMapsThatAreNoExrAndConventionsThatAreNone) {
+  expect_refused({"warp", "photo.png", "curves.svg", "--forward-map", "f.png"},
+                 {"--forward-map f.png", "must be the path of an .exr file"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--lattice-vtk", "l.vtk"},
+                 {"--lattice-vtk l.vtk", "must be the path of a .vts file"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--map-convention", "uv"},
+                 {"--map-convention uv", "must be one of: st, pixel, displacement"});
+  expect_refused(
+      {"warp", "photo.png", "curves.svg", "--forward-map", "m.exr", "--backward-map", "m.exr"},
+      {"m.exr", "must not be the same file"});
+}
+
 TEST_F(DriverCommand, RefusesAMissingPicture) {
   expect_refused({"warp", "none.png", "curves.svg", "-o", "out.png"}, {"none.png", "no such file"});
 }

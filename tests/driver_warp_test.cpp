@@ -141,6 +141,48 @@ TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
   EXPECT_EQ(text.find("inf"), std::string::npos);
 }
 
+TEST_F(DriverWarp, MapsAndLatticeAreWrittenAndTheReportHasTheirRoundTrip) {
+  draw_shift(10);
+  scratch.write("scene.toml",
+                "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 48\n"
+                "backward_map = \"b.exr\"\nforward_map = \"f.exr\"\n"
+                "map_convention = \"pixel\"\nlattice_cells = \"c.exr\"\n"
+                "lattice_vtk = \"l.vts\"\nreport = \"r.json\"\n");
+  const RunResult result = run_drumhead(scratch, {"warp", "scene.toml"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto at = [&](const Image& map, int x, int y, int c) {
+    return map.pixels[std::size_t((y * kWidth + x) * 2 + c)];
+  };
+  const Image backward = read_image(scratch / "b.exr"), forward = read_image(scratch / "f.exr");
+  EXPECT_NEAR(at(backward, 58, 32, 0), 48, 0.5);
+  EXPECT_NEAR(at(backward, 58, 32, 1), 32, 0.5);
+  EXPECT_NEAR(at(forward, 48, 32, 0), 58, 0.5);
+  EXPECT_NEAR(at(forward, 48, 32, 1), 32, 0.5);
+
+  const Json report = Json::parse(read_text(scratch / "r.json"));
+  const Json& maps = report["maps"];
+  EXPECT_EQ(maps["convention"], "pixel");
+  EXPECT_EQ(maps["frame"], Json::array({0, 0, kWidth, kHeight}));
+  EXPECT_LT(maps["round_trip_px"]["max"], 1e-4);
+  EXPECT_GT(maps["round_trip_px"]["sampled_max"], maps["round_trip_px"]["max"]);
+  EXPECT_LT(maps["round_trip_px"]["sampled_rms"], 0.1);
+
+  // The least J of the cells is the report's, and their pressure is the membrane's: P = kappa (J −
+  // 1).
+  const Image cells = read_image(scratch / "c.exr");
+  ASSERT_EQ(cells.width(), report["lattice"]["nx"].get<int>());
+  const int J = cells.spec.channelindex("J"), P = cells.spec.channelindex("P");
+  float least = 1.0f, farthest = 0.0f;
+  for (std::size_t k = 0; k < cells.pixels.size(); k += 3) {
+    const float j = cells.pixels[k + std::size_t(J)], p = cells.pixels[k + std::size_t(P)];
+    least = std::min(least, j);
+    farthest = std::max(farthest, std::abs(p - (j - 1)));
+  }
+  EXPECT_NEAR(least, report["folds"]["min_J"].get<double>(), 1e-6);
+  EXPECT_LT(least, 0.9);
+  EXPECT_LT(farthest, 0.02);
+}
+
 TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
   draw_shift(6);
   const auto run = [&](const std::string& flag, const std::string& value) {

@@ -79,6 +79,15 @@ struct BackwardMapTarget {
   int left = 0, top = 0;
 };
 
+/// The forward map to write, at the centres of pixels (left … left+width−1, top … top+height−1) of
+/// the source: pixel (a, b) of the rectangle has index b·row_stride + a.
+struct ForwardMapTarget {
+  Position* output = nullptr;  ///< where the warp takes the pixel's centre
+  int width = 0, height = 0;
+  std::ptrdiff_t row_stride = 0;  ///< pixels from row to row, ≥ width
+  int left = 0, top = 0;
+};
+
 /// What lies beyond the source picture.
 enum class Border {
   clamp,        ///< its edge pixels go on for ever
@@ -130,5 +139,8 @@ void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int t
 /// Where the warp takes a rest position (the forward map): rest + bilinear displacement inside the
 /// lattice, rest itself outside.
 Position forward_position(const LatticeMapView& map, Position rest_px);
+
+/// forward_position at every pixel's centre.
+void forward_map(const LatticeMapView& map, const ForwardMapTarget& out, int threads = 0);
 
 }  // namespace drumhead::kernels

@@ -106,6 +106,13 @@ struct Solution {
   SolveReport report;
 };
 
+/// J of a cell: at its centre (J*, which is its mean) and the least of its four corners.
+struct CellJ {
+  double centre = 1.0, least_corner = 1.0;
+};
+/// Of cell (i, j).
+CellJ cell_J(const Solution& solution, int i, int j);
+
 /// Solves a scene. Throws std::invalid_argument, naming value and bound, for bad input only;
 /// numerical outcomes are in `report.status`, and the best iterate is always returned.
 [[nodiscard]] Solution solve(const WarpProblem& problem, const SolverOptions& options = {});
