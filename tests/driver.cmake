@@ -9,7 +9,20 @@ drumhead_test(NAME driver_warp_test
   SOURCES driver_scratch.cpp driver_warp_test.cpp
   LINK drumhead_driver
   LABEL numeric)
-foreach(test driver_test driver_warp_test)
+drumhead_test(NAME driver_consumers_test
+  SOURCES driver_scratch.cpp driver_consumers_test.cpp
+  LINK drumhead_driver
+  LABEL numeric)
+# Two of OpenCV's libraries suffice, which its CMake package cannot find alone.
+find_path(OPENCV_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(OPENCV_IMGPROC opencv_imgproc)
+find_library(OPENCV_CORE opencv_core)
+if(OPENCV_INCLUDE_DIR AND OPENCV_IMGPROC AND OPENCV_CORE)
+  target_include_directories(driver_consumers_test SYSTEM PRIVATE ${OPENCV_INCLUDE_DIR})
+  target_link_libraries(driver_consumers_test PRIVATE ${OPENCV_IMGPROC} ${OPENCV_CORE})
+  target_compile_definitions(driver_consumers_test PRIVATE DRUMHEAD_TEST_OPENCV=1)
+endif()
+foreach(test driver_test driver_warp_test driver_consumers_test)
   target_compile_definitions(${test} PRIVATE
     DRUMHEAD_EXECUTABLE="$<TARGET_FILE:drumhead>"
     DRUMHEAD_TEST_DATA="${CMAKE_CURRENT_LIST_DIR}/data")

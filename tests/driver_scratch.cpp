@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -46,14 +47,12 @@ std::string read_text(const fs::path& file) {
   return text.str();
 }
 
-RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& words) {
+RunResult run_program(const Scratch& scratch, std::vector<std::string> words) {
   const Scratch logs;
   const fs::path out = logs.write("out", ""), err = logs.write("err", "");
-  std::vector<std::string> all{DRUMHEAD_EXECUTABLE};
-  all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> arguments;
-  arguments.reserve(all.size() + 1);
-  for (std::string& word : all) arguments.push_back(word.data());
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -61,13 +60,20 @@ RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& w
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY, 0);
   pid_t child = 0;
-  if (posix_spawn(&child, all[0].c_str(), &actions, nullptr, arguments.data(), environ) != 0) {
-    throw std::runtime_error(all[0] + " cannot be run");
-  }
+  const int error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT) return {.exit_code = 127};
+  if (error != 0) throw std::runtime_error(words[0] + " cannot be run");
   int status = 0;
   waitpid(child, &status, 0);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+}
+
+RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& words) {
+  std::vector<std::string> all{DRUMHEAD_EXECUTABLE};
+  all.insert(all.end(), words.begin(), words.end());
+  return run_program(scratch, std::move(all));
 }
 
 std::string drawing(int width, int height, const std::string& elements) {

@@ -32,7 +32,11 @@ struct RunResult {
   std::string out, err;
 };
 
-/// Runs `drumhead words…` in the scratch folder, without a terminal.
+/// Runs a program in the scratch folder, without a terminal; words[0] is looked for in PATH. Where
+/// there is no such program, the exit code is 127.
+RunResult run_program(const Scratch& scratch, std::vector<std::string> words);
+
+/// Runs `drumhead words…` so.
 RunResult run_drumhead(const Scratch& scratch, const std::vector<std::string>& words);
 
 /// An SVG of width × height user units.

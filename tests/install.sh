@@ -16,7 +16,9 @@ packages="
   libgtest-dev
   libbenchmark-dev"
 case ${1:-} in
-  tests | all) packages="$packages chromium-headless-shell" ;;
+  tests | all)
+    packages="$packages chromium-headless-shell imagemagick libvips-tools libopencv-imgproc-dev"
+    ;;
 esac
 if [ "${1:-}" = all ]; then
   packages="$packages clang-14 libomp-14-dev clang-format-14 clang-tidy-14"
