@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "light.h"
+
 namespace drumhead::driver {
 namespace {
 
@@ -14,57 +16,39 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find_first_of("\r\n"));
 }
 
-/// Calls colour(value, alpha) for every value that alpha weights.
-template <class Colour>
-void with_alpha(Image& image, const Colour& colour) {
-  const int channels = image.channels(), alpha = image.spec.alpha_channel;
-  for (std::size_t p = 0; p < image.pixels.size(); p += std::size_t(channels)) {
-    const float a = image.pixels[p + std::size_t(alpha)];
-    for (int c = 0; c < channels; ++c) {
-      if (c != alpha && c != image.spec.z_channel) colour(image.pixels[p + std::size_t(c)], a);
-    }
-  }
-}
-
-void multiply_alpha(Image& image) {
-  with_alpha(image, [](float& value, float alpha) { value *= alpha; });
-}
-
-/// Where alpha is 0 nothing is known of the colour: it stays 0.
-void divide_alpha(Image& image) {
-  with_alpha(image, [](float& value, float alpha) { value = alpha > 0 ? value / alpha : 0.0f; });
-}
-
-/// Orientation as EXIF numbers it: the stored pixel (a, b) of the upright pixel (x, y).
-std::pair<int, int> stored_position(int orientation, int stored_width, int stored_height, int x,
-                                    int y) {
-  const int a = stored_width - 1, b = stored_height - 1;
+/// Orientation as EXIF numbers it: the upright place of the stored pixel (a, b).
+std::pair<int, int> upright_position(int orientation, int stored_width, int stored_height, int a,
+                                     int b) {
+  const int right = stored_width - 1 - a, up = stored_height - 1 - b;
   switch (orientation) {
     case 2:
-      return {a - x, y};
+      return {right, b};
     case 3:
-      return {a - x, b - y};
+      return {right, up};
     case 4:
-      return {x, b - y};
+      return {a, up};
     case 5:
-      return {y, x};
+      return {b, a};
     case 6:
-      return {y, b - x};
+      return {up, a};
     case 7:
-      return {a - y, b - x};
+      return {up, right};
     case 8:
-      return {a - y, x};
+      return {b, right};
     default:
-      return {x, y};
+      return {a, b};
   }
 }
 
-void turn_upright(Image& image) {
-  OIIO::ImageSpec& spec = image.spec;
+/// Orientation of the file, 1 where it has none that is known.
+int orientation_of(const OIIO::ImageSpec& spec) {
   const int orientation = spec.get_int_attribute("Orientation", 1);
-  if (orientation < 2 || orientation > 8) return;
-  const int width = spec.width, height = spec.height;
-  const auto channels = std::size_t(spec.nchannels);
+  return orientation >= 1 && orientation <= 8 ? orientation : 1;
+}
+
+void turn_upright(OIIO::ImageSpec& spec) {
+  const int orientation = orientation_of(spec);
+  if (orientation == 1) return;
   if (orientation >= 5) {
     std::swap(spec.width, spec.height);
     std::swap(spec.x, spec.y);
@@ -74,93 +58,119 @@ void turn_upright(Image& image) {
     spec.attribute("Exif:PixelYDimension", spec.height);
   }
   spec.attribute("Orientation", 1);
-  std::vector<float> upright(image.pixels.size());
-  auto out = upright.begin();
-  for (int y = 0; y < spec.height; ++y) {
-    for (int x = 0; x < spec.width; ++x) {
-      const auto [a, b] = stored_position(orientation, width, height, x, y);
-      const auto in =
-          image.pixels.begin() + (std::ptrdiff_t(b) * width + a) * std::ptrdiff_t(channels);
-      out = std::copy_n(in, channels, out);
+}
+
+void add_alpha(OIIO::ImageSpec& spec) {
+  spec.alpha_channel = spec.nchannels++;
+  spec.channelnames.emplace_back("A");
+  if (!spec.channelformats.empty()) spec.channelformats.push_back(spec.channelformats.front());
+  spec.attribute(kUnassociated, 1);
+}
+
+/// A file on its way into an Image, band by band of stored rows.
+class Reader {
+ public:
+  Reader(const std::filesystem::path& file, const ReadOptions& options)
+      : file_(file), options_(options) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) fail("no such file");
+    if (!std::filesystem::is_regular_file(file, error)) fail("not a regular file");
+    OIIO::ImageSpec hints;
+    // Multiplied here, in float: in 8 bits dark colours would be lost.
+    hints.attribute(kUnassociated, 1);
+    input_ = OIIO::ImageInput::open(file.string(), &hints);
+    if (!input_) fail(OIIO::geterror());
+    stored_ = input_->spec();
+    if (stored_.deep || stored_.depth > 1) fail("deep and volume images are not supported");
+    if (stored_.nchannels < 1) fail("it has no channels");
+  }
+
+  Image read() {
+    Image image{stored_, {}};
+    image.spec.attribute("drumhead:format", input_->format_name());
+    turn_upright(image.spec);
+    if (options_.need_alpha && stored_.alpha_channel < 0) add_alpha(image.spec);
+    image.decoded =
+        options_.linear_light && !stored_.format.is_floating_point() &&
+        !OIIO::Strutil::iequals(stored_.get_string_attribute("oiio:ColorSpace"), "linear");
+    image.pixels.resize(std::size_t(image.width()) * std::size_t(image.height()) *
+                        std::size_t(image.channels()));
+    const int tile = std::max(1, stored_.tile_height);
+    const int step = (band_rows(stored_.width) + tile - 1) / tile * tile;
+    std::vector<float> rows;
+    for (int b = 0; b < stored_.height; b += step) {
+      const int count = std::min(step, stored_.height - b);
+      read_rows(b, count, rows);
+      weigh(image.decoded, rows);
+      place(rows, b, count, image);
+      if (options_.progress) options_.progress(double(b + count) / stored_.height);
+    }
+    return image;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw std::invalid_argument(file_.string() + ": cannot be read: " + first_line(reason));
+  }
+
+  void read_rows(int b, int count, std::vector<float>& rows) {
+    const int first = stored_.y + b, channels = stored_.nchannels;
+    rows.resize(std::size_t(stored_.width) * std::size_t(count) * std::size_t(channels));
+    const bool read = stored_.tile_width > 0
+                          ? input_->read_tiles(0, 0, stored_.x, stored_.x + stored_.width, first,
+                                               first + count, stored_.z, stored_.z + 1, 0, channels,
+                                               OIIO::TypeDesc::FLOAT, rows.data())
+                          : input_->read_scanlines(0, 0, first, first + count, stored_.z, 0,
+                                                   channels, OIIO::TypeDesc::FLOAT, rows.data());
+    if (!read) fail(input_->geterror());
+  }
+
+  /// To light where asked for, and multiplied by alpha.
+  void weigh(bool decode, std::vector<float>& rows) const {
+    const bool alpha = stored_.alpha_channel >= 0;
+    const bool plain = alpha && stored_.get_int_attribute(kUnassociated);
+    if (decode) {
+      if (alpha && !plain) for_each_colour(stored_, rows, divide_alpha);
+      for_each_colour(stored_, rows, [](float& value, float) { value = decode_srgb(value); });
+    }
+    if (plain || (alpha && decode)) for_each_colour(stored_, rows, multiply_alpha);
+  }
+
+  /// Stored rows b … to where they stand upright; an alpha that was added is 1.
+  void place(const std::vector<float>& rows, int b, int count, Image& image) const {
+    const int orientation = orientation_of(stored_), width = stored_.width;
+    const auto from = std::size_t(stored_.nchannels), to = std::size_t(image.channels());
+    // Column by column, so that turned rows are written in order.
+    const bool turned = orientation >= 5;
+    const int outer = turned ? width : count, inner = turned ? count : width;
+    for (int k = 0; k < outer; ++k) {
+      for (int l = 0; l < inner; ++l) {
+        const int a = turned ? k : l, row = turned ? l : k;
+        const auto [x, y] = upright_position(orientation, width, stored_.height, a, b + row);
+        const auto in = rows.begin() + (std::ptrdiff_t(row) * width + a) * std::ptrdiff_t(from);
+        const auto out =
+            image.pixels.begin() + (std::ptrdiff_t(y) * image.width() + x) * std::ptrdiff_t(to);
+        std::copy_n(in, from, out);
+        if (to > from) out[std::ptrdiff_t(from)] = 1.0f;
+      }
     }
   }
-  image.pixels = std::move(upright);
-}
 
-/// Without alpha, over white.
-void flatten(Image& image) {
-  const int channels = image.channels(), alpha = image.spec.alpha_channel;
-  with_alpha(image, [](float& value, float a) { value += 1.0f - a; });
-  OIIO::ImageSpec& spec = image.spec;
-  std::vector<float> opaque;
-  opaque.reserve(image.pixels.size());
-  for (std::size_t k = 0; k < image.pixels.size(); ++k) {
-    if (int(k % std::size_t(channels)) != alpha) opaque.push_back(image.pixels[k]);
-  }
-  image.pixels = std::move(opaque);
-  spec.nchannels -= 1;
-  spec.channelnames.erase(spec.channelnames.begin() + alpha);
-  if (!spec.channelformats.empty()) spec.channelformats.erase(spec.channelformats.begin() + alpha);
-  spec.alpha_channel = -1;
-}
-
-/// What described the input's file, not its picture.
-void adapt_to_format(OIIO::ImageSpec& spec, const std::string& format) {
-  spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-  for (const char* name :
-       {"textureformat", "openexr:levelmode", "thumbnail_image", "oiio:subimages",
-        "oiio:ConstantColor", "oiio:AverageColor", "oiio:SHA-1"}) {
-    spec.erase_attribute(name);
-  }
-  if (spec.get_int_attribute("oiio:BitsPerSample", 8) < 8)
-    spec.erase_attribute("oiio:BitsPerSample");
-  if (spec.get_string_attribute("drumhead:format") != format) {
-    spec.erase_attribute("compression");
-    spec.erase_attribute("oiio:BitsPerSample");
-  }
-  spec.erase_attribute("drumhead:format");
-}
-
-[[noreturn]] void fail_to_write(const std::filesystem::path& file, const std::string& reason) {
-  throw std::runtime_error(file.string() + ": cannot be written: " + first_line(reason));
-}
-
-void write_pixels(OIIO::ImageOutput& output, const OIIO::ImageSpec& spec,
-                  const std::vector<float>& pixels, const std::filesystem::path& file) {
-  if (!output.open(file.string(), spec) ||
-      !output.write_image(OIIO::TypeDesc::FLOAT, pixels.data()) || !output.close()) {
-    fail_to_write(file, output.geterror());
-  }
-}
+  const std::filesystem::path file_;
+  const ReadOptions& options_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec stored_;
+};
 
 }  // namespace
 
-Image read_image(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& reason) {
-    throw std::invalid_argument(file.string() + ": cannot be read: " + first_line(reason));
-  };
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) fail("no such file");
-  if (!std::filesystem::is_regular_file(file, error)) fail("not a regular file");
-  OIIO::ImageSpec hints;
-  hints.attribute(kUnassociated,
-                  1);  // multiplied here, in float: in 8 bits dark colours would be lost
-  const auto input = OIIO::ImageInput::open(file.string(), &hints);
-  if (!input) fail(OIIO::geterror());
-  Image image{input->spec(), {}};
-  if (image.spec.deep || image.spec.depth > 1) fail("deep and volume images are not supported");
-  if (image.channels() < 1) fail("it has no channels");
-  const auto values = std::size_t(image.width()) * std::size_t(image.height());
-  image.pixels.resize(values * std::size_t(image.channels()));
-  if (!input->read_image(0, 0, 0, image.channels(), OIIO::TypeDesc::FLOAT, image.pixels.data())) {
-    fail(input->geterror());
-  }
-  image.spec.attribute("drumhead:format", input->format_name());
-  if (image.spec.alpha_channel >= 0 && image.spec.get_int_attribute(kUnassociated)) {
-    multiply_alpha(image);
-  }
-  turn_upright(image);
-  return image;
+int band_rows(int width) {
+  constexpr int kPixels = 1 << 20, kTile = 64;  // the resampler works on tiles of 64 rows
+  return std::max(1, kPixels / std::max(1, width) / kTile) * kTile;
+}
+
+Image read_image(const std::filesystem::path& file, const ReadOptions& options) {
+  return Reader(file, options).read();
 }
 
 void check_writable_format(const std::filesystem::path& file) {
@@ -169,27 +179,6 @@ void check_writable_format(const std::filesystem::path& file) {
     throw std::invalid_argument(file.string() + ": no picture format is known by its extension; " +
                                 "there are " + kWrittenFormats + " and others");
   }
-}
-
-void write_image(Image image, const std::filesystem::path& file) {
-  const auto output = OIIO::ImageOutput::create(file.string());
-  if (!output) fail_to_write(file, OIIO::geterror());
-  const std::string format = output->format_name();
-  if (image.spec.alpha_channel >= 0) {
-    // OpenEXR's alpha is always multiplied; TIFF has both kinds; the others have only the plain
-    // kind.
-    const bool was_plain = image.spec.get_int_attribute(kUnassociated);
-    if (!output->supports("alpha")) {
-      flatten(image);
-    } else if (format == "openexr" || (format == "tiff" && !was_plain)) {
-      image.spec.erase_attribute(kUnassociated);
-    } else {
-      divide_alpha(image);
-      image.spec.attribute(kUnassociated, 1);
-    }
-  }
-  adapt_to_format(image.spec, format);
-  write_pixels(*output, image.spec, image.pixels, file);
 }
 
 }  // namespace drumhead::driver

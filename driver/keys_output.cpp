@@ -1,10 +1,31 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 
 #include "keys.h"
 
 namespace drumhead::driver {
 namespace {
+
+constexpr std::string_view kPng = "the path of a .png file";
+
+template <auto Field>
+bool set_png(const Value& value, Options& o) {
+  return set_path(value, ".png", o.*Field);
+}
+
+bool set_border(const Value& value, Options& o) {
+  using kernels::Border;
+  constexpr std::array kBorders{std::pair{"clamp", Border::clamp},
+                                std::pair{"mirror", Border::mirror},
+                                std::pair{"transparent", Border::transparent}};
+  const auto* text = std::get_if<std::string>(&value);
+  const auto* found =
+      std::ranges::find_if(kBorders, [&](const auto& b) { return text && *text == b.first; });
+  if (found == kBorders.end()) return false;
+  o.border = found->second;
+  return true;
+}
 
 const std::array kKeys = {
     Key{.name = "output",
@@ -15,11 +36,43 @@ const std::array kKeys = {
             "white where the format has no alpha",
         .set = set_file<&Options::output>,
         .path = true},
+    Key{.name = "border",
+        .value = "B",
+        .bound = "one of: clamp, mirror, transparent",
+        .help = "what lies beyond the picture: its edge pixels, its mirror image, or nothing (a "
+                "picture without alpha then gets one)",
+        .fallback = "clamp",
+        .set = set_border},
+    Key{.name = "expand",
+        .value = "",
+        .bound = "true or false",
+        .help = "the pictures show the whole padded domain; in EXR the picture stays the display "
+                "window",
+        .set = [](const Value& v, Options& o) { return set_switch(v, o.expand); }},
+    Key{.name = "linear_light",
+        .value = "",
+        .bound = "true or false",
+        .help = "colours of 8 and 16 bits are decoded from sRGB before they are filtered, and "
+                "coded again; those of float pictures are light already and stay as they are",
+        .set = [](const Value& v, Options& o) { return set_switch(v, o.linear_light); }},
     Key{.name = "overlay",
         .value = "PNG",
-        .bound = "the path of a .png file",
+        .bound = kPng,
         .help = "the warped picture under the deformed lattice, warped curves and targets",
-        .set = [](const Value& v, Options& o) { return set_path(v, ".png", o.overlay); },
+        .set = set_png<&Options::overlay>,
+        .path = true},
+    Key{.name = "checkerboard",
+        .value = "PNG",
+        .bound = kPng,
+        .help = "24 squares across the longer side through the warp, coloured by where they were",
+        .set = set_png<&Options::checkerboard>,
+        .path = true},
+    Key{.name = "jacobian",
+        .value = "PNG",
+        .bound = kPng,
+        .help = "det J, the change of area: blue 1/4, white 1, red 4; black turned over, folds "
+                "in rings",
+        .set = set_png<&Options::jacobian>,
         .path = true},
     Key{.name = "report",
         .value = "JSON",

@@ -17,6 +17,7 @@
 #include <drumhead/grid/lattice.h>
 #include <drumhead/grid/mask.h>
 #include <drumhead/grid/material.h>
+#include <drumhead/kernels/resample.h>
 
 #include "maps.h"
 
@@ -41,7 +42,11 @@ struct Options {
   std::filesystem::path scene;    ///< the scene file, where there is one
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
   std::filesystem::path curves;  ///< SVG; the picture itself where that is an SVG and this is empty
-  std::filesystem::path output, overlay, report;  ///< empty: not written, as the next
+  std::filesystem::path output, report;  ///< empty: not written, as the next
+  std::filesystem::path overlay, checkerboard, jacobian;
+  kernels::Border border = kernels::Border::clamp;  ///< beyond the picture
+  bool expand = false;        ///< the whole padded domain is rendered, not only the picture
+  bool linear_light = false;  ///< integer pictures are decoded from sRGB before they are filtered
   std::filesystem::path backward_map, forward_map, lattice_file, lattice_cells, lattice_vtk;
   MapConvention map_convention = MapConvention::st;
   grid::LatticeOptions lattice;
@@ -59,8 +64,9 @@ struct Options {
 
 /// Every file that a run may write.
 inline constexpr std::array kOutputFiles = {
-    &Options::output,      &Options::overlay,      &Options::report,        &Options::backward_map,
-    &Options::forward_map, &Options::lattice_file, &Options::lattice_cells, &Options::lattice_vtk};
+    &Options::output,        &Options::report,       &Options::overlay,     &Options::checkerboard,
+    &Options::jacobian,      &Options::backward_map, &Options::forward_map, &Options::lattice_file,
+    &Options::lattice_cells, &Options::lattice_vtk};
 
 /// A key's value as the scene's or the command line's syntax gives it.
 using Value = std::variant<bool, std::int64_t, double, std::string>;

@@ -1,22 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The warped picture under what made it: the deformed lattice, the warped source curves and their
-// targets.
+// What made the warped picture, drawn over it: the deformed lattice, the warped source curves and
+// their targets.
 #include <drumhead/multigrid/warp.h>
-#include <filesystem>
 #include <vector>
 
-#include "image.h"
+#include "canvas.h"
 #include "svg_curves.h"
 
 namespace drumhead::driver {
 
-/// PNG of the picture's size, enlarged by a whole factor where its longer side has less than 500
-/// pixels and made smaller where it has more than 16384. Lattice lines are thinned to at least 12
-/// pixels and 1/48 of the longer side apart. Targets lie as wide cyan lines under the thin red
-/// of the warped sources, pins are white: where the warp meets its target, red runs in the
-/// middle of cyan. Throws std::runtime_error naming `file`.
-void write_overlay(const Image& warped, const multigrid::Solution& solution,
-                   const std::vector<SvgCurve>& curves, const std::filesystem::path& file);
+/// Lattice lines are thinned to at least 12 units and 1/48 of the longer side apart; the lattice's
+/// edge is always there. Targets lie as wide cyan lines under the thin red of the warped sources,
+/// pins are white: where the warp meets its target, red runs in the middle of cyan.
+void draw_overlay(const multigrid::Solution& solution, const std::vector<SvgCurve>& curves,
+                  Canvas& canvas);
+
+/// Appends a chain's points, each carried by `place`, to the canvas's path, dense enough to follow
+/// every cell.
+template <class Place>
+void add_chain(const std::vector<grid::CubicBezier>& chain, double cell_px, Canvas& canvas,
+               const Place& place) {
+  bool first = true;
+  for (const grid::CubicBezier& piece : chain) {
+    const double step = std::min(cell_px / 2, 3 / canvas.scale());
+    const int points = std::clamp(int(std::ceil(grid::arc_length(piece) / step)), 1, 100000);
+    for (int k = first ? 0 : 1; k <= points; ++k) {
+      canvas.line_to(place(piece.at(double(k) / points)), first);
+      first = false;
+    }
+  }
+}
 
 }  // namespace drumhead::driver

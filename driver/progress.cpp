@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace drumhead::driver {
@@ -23,14 +24,30 @@ void Progress::show(const std::string& text) {
   shown_ = true;
 }
 
-void Progress::show(const multigrid::Progress& at) {
+void Progress::show(const std::string& phase, double done, const std::string& detail) {
   const auto now = std::chrono::steady_clock::now();
-  if (!talking_ || now - last_ < std::chrono::milliseconds(50)) return;
+  if (phase != phase_) {
+    phase_ = phase;
+    phase_start_ = now;
+  } else if (now - last_ < std::chrono::milliseconds(50)) {
+    return;
+  }
   last_ = now;
-  char text[120];
-  std::snprintf(text, sizeof text, "solving %3.0f %%, %d x %d cells, Newton step %d",
-                100.0 * std::clamp(at.fraction, 0.0, 1.0), at.nx, at.ny, at.newton_step);
+  const double share = std::clamp(done, 0.0, 1.0);
+  std::string text = phase + ' ' + std::to_string(std::lround(100.0 * share)) + " %" + detail;
+  // Before, the estimate is worth nothing.
+  constexpr double kLeastSeconds = 0.5, kLeastShare = 0.02;
+  const double past = std::chrono::duration<double>(now - phase_start_).count();
+  if (past >= kLeastSeconds && share >= kLeastShare) {
+    text += ", " + duration_in_words(past * (1.0 - share) / share) + " left";
+  }
   show(text);
+}
+
+void Progress::show(const multigrid::Progress& at) {
+  show("solving", at.fraction,
+       ", " + std::to_string(at.nx) + " x " + std::to_string(at.ny) + " cells, Newton step " +
+           std::to_string(at.newton_step));
 }
 
 void Progress::warn(const std::string& text) {
@@ -65,6 +82,18 @@ void Progress::summarise(const multigrid::Solution& solution, const Seconds& sec
                  folds.folded_cells, folds.inverted_cells, place.x, place.y);
   }
   for (const std::string& note : report.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+}
+
+std::string duration_in_words(double seconds) {
+  const long whole = std::lround(std::clamp(seconds, 0.0, 1e7));
+  char text[40];
+  if (whole < 60)
+    std::snprintf(text, sizeof text, "%ld s", whole);
+  else if (whole < 3600)
+    std::snprintf(text, sizeof text, "%ld:%02ld min", whole / 60, whole % 60);
+  else
+    std::snprintf(text, sizeof text, "%ld:%02ld h", whole / 3600, whole / 60 % 60);
+  return text;
 }
 
 const char* in_words(multigrid::Status status) {

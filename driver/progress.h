@@ -20,6 +20,9 @@ class Progress {
 
   /// "drumhead: text" in place of the line before.
   void show(const std::string& text);
+  /// The phase, the share of it that is done, and the time left, reckoned from the time since the
+  /// phase was first shown; `detail` goes between. At most twenty times a second.
+  void show(const std::string& phase, double done, const std::string& detail = {});
   void show(const multigrid::Progress& at);
   void warn(const std::string& text);
   void summarise(const multigrid::Solution& solution, const Seconds& seconds);
@@ -29,8 +32,12 @@ class Progress {
 
   bool shown_ = false;
   const bool talking_;
-  std::chrono::steady_clock::time_point last_{};
+  std::string phase_;
+  std::chrono::steady_clock::time_point last_{}, phase_start_{};
 };
+
+/// "7 s", "2:05 min" or "1:02 h".
+std::string duration_in_words(double seconds);
 
 /// The status in words, for a person.
 const char* in_words(multigrid::Status status);

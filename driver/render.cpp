@@ -2,38 +2,51 @@
 #include "render.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace drumhead::driver {
 namespace {
 
-struct Range {
-  float least = std::numeric_limits<float>::infinity(), greatest = -least;
-};
+constexpr double kGreatestSide = 65535;
 
-std::vector<Range> ranges(const Image& image) {
-  std::vector<Range> all(std::size_t(image.channels()));
-  for (std::size_t k = 0; k < image.pixels.size(); k += all.size()) {
-    for (std::size_t c = 0; c < all.size(); ++c) {
-      const float value = image.pixels[k + c];
-      if (value < all[c].least) all[c].least = value;
-      if (value > all[c].greatest) all[c].greatest = value;
-    }
-  }
-  return all;
+kernels::ImageView view_of(const Image& picture) {
+  return {.data = picture.pixels.data(),
+          .width = picture.width(),
+          .height = picture.height(),
+          .channels = picture.channels(),
+          .row_stride = std::ptrdiff_t(picture.width()) * picture.channels()};
 }
 
-void clamp(const std::vector<Range>& ranges, Image& image) {
-  for (std::size_t k = 0; k < image.pixels.size(); k += ranges.size()) {
-    for (std::size_t c = 0; c < ranges.size(); ++c) {
-      float& value = image.pixels[k + c];
-      if (value < ranges[c].least) value = ranges[c].least;
-      if (value > ranges[c].greatest) value = ranges[c].greatest;
-    }
-  }
+kernels::ResampleOptions resample_options(kernels::Border border, int threads) {
+  kernels::ResampleOptions options;
+  options.border = border;
+  options.threads = threads;
+  return options;
+}
+
+OIIO::ImageSpec spec_of(const Image& picture, const Frame& frame) {
+  OIIO::ImageSpec spec = picture.spec;
+  spec.x += frame.left;
+  spec.y += frame.top;
+  spec.width = frame.width;
+  spec.height = frame.height;
+  return spec;
 }
 
 }  // namespace
+
+Frame frame_of(const Image& picture, const grid::Lattice& lattice, bool expand) {
+  if (!expand) return {0, 0, picture.width(), picture.height()};
+  const double width = lattice.nx * lattice.cell_px, height = lattice.ny * lattice.cell_px;
+  if (std::max(width, height) > kGreatestSide) {
+    throw std::invalid_argument(
+        "expand: the padded domain has " + std::to_string(std::llround(width)) + " x " +
+        std::to_string(std::llround(height)) + " pixels; a side must have at most 65535");
+  }
+  return padded_frame(lattice);
+}
 
 kernels::LatticeMapView map_of(const multigrid::Solution& solution) {
   const grid::Lattice& lattice = solution.lattice;
@@ -45,24 +58,44 @@ kernels::LatticeMapView map_of(const multigrid::Solution& solution) {
           .origin_px = {lattice.origin_px.x, lattice.origin_px.y}};
 }
 
-Image render(const Image& picture, const multigrid::Solution& solution, int threads) {
-  Image warped{picture.spec, std::vector<float>(picture.pixels.size())};
-  const std::ptrdiff_t stride = std::ptrdiff_t(picture.width()) * picture.channels();
-  const kernels::ImageView source{.data = picture.pixels.data(),
-                                  .width = picture.width(),
-                                  .height = picture.height(),
-                                  .channels = picture.channels(),
-                                  .row_stride = stride};
-  const kernels::ImageTarget target{.data = warped.pixels.data(),
-                                    .width = picture.width(),
-                                    .height = picture.height(),
-                                    .channels = picture.channels(),
-                                    .row_stride = stride};
-  kernels::ResampleOptions options;
-  options.threads = threads;
-  kernels::Resampler(source, map_of(solution), options).render(target);
-  clamp(ranges(picture), warped);
-  return warped;
+Renderer::Renderer(const Image& picture, const multigrid::Solution& solution, const Frame& frame,
+                   kernels::Border border, int threads)
+    : frame_(frame),
+      spec_(spec_of(picture, frame)),
+      decoded_(picture.decoded),
+      resampler_(view_of(picture), map_of(solution), resample_options(border, threads)) {
+  const auto channels = std::size_t(picture.channels());
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const bool zero = border == kernels::Border::transparent;
+  ranges_.assign(channels, zero ? Range{0.0f, 0.0f} : Range{kInfinity, -kInfinity});
+  for (std::size_t k = 0; k < picture.pixels.size(); k += channels) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      const float value = picture.pixels[k + c];
+      if (value < ranges_[c].least) ranges_[c].least = value;
+      if (value > ranges_[c].greatest) ranges_[c].greatest = value;
+    }
+  }
+}
+
+std::vector<float> Renderer::rows(int top, int height) const {
+  const auto channels = std::size_t(spec_.nchannels);
+  const std::size_t stride = std::size_t(frame_.width) * channels;
+  std::vector<float> pixels(stride * std::size_t(height));
+  resampler_.render({.data = pixels.data(),
+                     .width = frame_.width,
+                     .height = height,
+                     .channels = spec_.nchannels,
+                     .row_stride = std::ptrdiff_t(stride),
+                     .left = frame_.left,
+                     .top = frame_.top + top});
+  for (std::size_t k = 0; k < pixels.size(); k += channels) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      float& value = pixels[k + c];
+      if (value < ranges_[c].least) value = ranges_[c].least;
+      if (value > ranges_[c].greatest) value = ranges_[c].greatest;
+    }
+  }
+  return pixels;
 }
 
 }  // namespace drumhead::driver

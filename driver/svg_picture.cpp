@@ -103,7 +103,7 @@ int run(std::vector<std::string> words, const fs::path& log) {
 
 }  // namespace
 
-Image rasterise(const fs::path& file) {
+Image rasterise(const fs::path& file, const ReadOptions& options) {
   SvgDocument document(file);
   const auto view = document.view();
   if (!view) {
@@ -136,7 +136,7 @@ Image rasterise(const fs::path& file) {
   if (status != 0) {
     throw std::invalid_argument(file.string() + ": rsvg-convert: " + first_line(log.temporary()));
   }
-  return read_image(raster.temporary());
+  return read_image(raster.temporary(), options);
 }
 
 }  // namespace drumhead::driver

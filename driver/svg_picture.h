@@ -11,6 +11,6 @@ namespace drumhead::driver {
 /// The size in pixels is that of width and height, else of the viewBox, enlarged where the longer
 /// side has less than 1024 pixels. Throws std::invalid_argument naming the drawing where it has no
 /// size or rsvg-convert refuses it, std::runtime_error where rsvg-convert cannot be run.
-Image rasterise(const std::filesystem::path& file);
+Image rasterise(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace drumhead::driver

@@ -3,7 +3,6 @@
 
 #include <drumhead/multigrid/warp.h>
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <stdexcept>
 
@@ -13,10 +12,11 @@
 #include "image.h"
 #include "lattice_files.h"
 #include "masks.h"
-#include "overlay.h"
+#include "pictures.h"
 #include "progress.h"
 #include "render.h"
 #include "report.h"
+#include "stopwatch.h"
 #include "svg_curves.h"
 #include "svg_picture.h"
 
@@ -24,18 +24,6 @@ namespace drumhead::driver {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Wall-clock seconds since it was made or last read.
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
@@ -99,6 +87,8 @@ class Outputs {
   }
   /// Where to write what shall become `file`.
   const fs::path& operator[](const fs::path& file) const { return files_.at(file).temporary(); }
+  /// The same, empty for a file that was not asked for.
+  fs::path wanted(const fs::path& file) const { return file.empty() ? file : (*this)[file]; }
   void commit() {
     for (auto& [path, file] : files_) file.commit();
   }
@@ -116,10 +106,11 @@ void write_lattice_files(const Options& options, const multigrid::Solution& solu
 
 /// What the report says of the maps; nothing if none was asked for, or no report.
 std::optional<MapReport> write_maps(const Options& options, const Image& picture,
-                                    const multigrid::Solution& solution, const Outputs& outputs) {
+                                    const Frame& frame, const multigrid::Solution& solution,
+                                    const Outputs& outputs) {
   const kernels::LatticeMapView map = map_of(solution);
-  const int width = picture.width(), height = picture.height(), threads = options.threads;
-  const MapFormat format{options.map_convention, width, height, {0, 0, width, height}};
+  const int threads = options.threads;
+  const MapFormat format{options.map_convention, picture.width(), picture.height(), frame};
   if (!options.backward_map.empty()) {
     write_backward_map(map, format, threads, outputs[options.backward_map]);
   }
@@ -129,6 +120,16 @@ std::optional<MapReport> write_maps(const Options& options, const Image& picture
   const bool none = options.backward_map.empty() && options.forward_map.empty();
   if (none || options.report.empty()) return {};
   return MapReport{format, round_trip(map, format, threads)};
+}
+
+Image read_picture(const Options& options, Progress& progress) {
+  const std::string phase = "reading " + options.picture.string();
+  progress.show(phase, 0.0);
+  const ReadOptions read{.linear_light = options.linear_light,
+                         .need_alpha = options.border == kernels::Border::transparent,
+                         .progress = [&](double done) { progress.show(phase, done); }};
+  return has_extension(options.picture, ".svg") ? rasterise(options.picture, read)
+                                                : read_image(options.picture, read);
 }
 
 }  // namespace
@@ -141,13 +142,12 @@ int run_warp(Options options) {
   check_files(options);
   Outputs outputs(options);
 
-  progress.show("reading " + options.picture.string());
-  const Image picture = has_extension(options.picture, ".svg") ? rasterise(options.picture)
-                                                               : read_image(options.picture);
+  const Image picture = read_picture(options, progress);
   const SvgCurves drawing =
       read_curves(SvgDocument(options.curves), picture.width(), picture.height());
   for (const std::string& warning : drawing.warnings) progress.warn(warning);
   const multigrid::WarpProblem problem = problem_of(options, picture, drawing.curves);
+  const Frame frame = frame_of(picture, problem.lattice, options.expand);
   seconds.read = watch.lap();
 
   multigrid::SolverOptions solver{.exact = options.exact,
@@ -161,21 +161,18 @@ int run_warp(Options options) {
   seconds.solve = solution.report.solve_seconds;
   watch.lap();
 
-  progress.show("rendering");
-  Image warped;
-  if (!options.output.empty() || !options.overlay.empty()) {
-    warped = render(picture, solution, options.threads);
-  }
-  seconds.render = watch.lap();
+  make_pictures({picture, solution, drawing.curves, frame, options.border, options.threads},
+                {.output = outputs.wanted(options.output),
+                 .overlay = outputs.wanted(options.overlay),
+                 .checkerboard = outputs.wanted(options.checkerboard),
+                 .jacobian = outputs.wanted(options.jacobian)},
+                progress, seconds);
+  watch.lap();
 
   progress.show("writing");
-  if (!options.overlay.empty()) {
-    write_overlay(warped, solution, drawing.curves, outputs[options.overlay]);
-  }
-  if (!options.output.empty()) write_image(std::move(warped), outputs[options.output]);
   write_lattice_files(options, solution, outputs);
-  const auto maps = write_maps(options, picture, solution, outputs);
-  seconds.write = watch.lap();
+  const auto maps = write_maps(options, picture, frame, solution, outputs);
+  seconds.write += watch.lap();
   seconds.total = whole.lap();
   if (!options.report.empty()) {
     write_report(report_json(solution, options.model, seconds, maps), outputs[options.report]);

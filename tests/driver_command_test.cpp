@@ -133,6 +133,18 @@ TEST_F(DriverCommand, RefusesUnknownWordsAndMissingOnes) {
                  {"out.nothing: no picture format"});
 }
 
+TEST_F(DriverCommand, RefusesPicturesThatItCannotMake) {
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--border", "torus"},
+                 {"--border torus: must be one of: clamp, mirror, transparent"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--jacobian", "j.jpg"},
+                 {"--jacobian j.jpg: must be the path of a .png file"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--checkerboard", "no/folder/c.png"},
+                 {"no/folder/c.png: cannot be written: No such file or directory"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--cells", "2", "--margin",
+                  "3000", "--expand"},
+                 {"expand: the padded domain has ", "a side must have at most 65535"});
+}
+
 TEST_F(DriverCommand, LeavesAnOldOutputAloneWhenItRefuses) {
   scratch.write("out.png", "old");
   scratch.write("bad.svg", drawing(40, 40, ""));
