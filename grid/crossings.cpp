@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace drumhead::grid {
 namespace {
@@ -79,6 +81,21 @@ void find_crossings(const CubicBezier& curve, std::vector<double>& out) {
   add_crossings({p[0].x, p[1].x, p[2].x, p[3].x}, turning, out);
   add_crossings({p[0].y, p[1].y, p[2].y, p[3].y}, turning, out);
   std::ranges::sort(out);
+}
+
+int cell_index(double x, int n) {
+  const double nearest = std::round(x);
+  const double snapped = std::abs(x - nearest) < kSnap ? nearest : std::floor(x);
+  return std::clamp(int(snapped), 0, n - 1);
+}
+
+void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice) {
+  const Point px = lattice.origin_px + lattice.cell_px * cells;
+  const Point end = lattice.rest_px(lattice.nx, lattice.ny);
+  auto text = [](Point p) { return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")"; };
+  throw std::invalid_argument("curve '" + curve.name + "': the source leaves the lattice at " +
+                              text(px) + " px; it reaches from " + text(lattice.origin_px) +
+                              " to " + text(end));
 }
 
 }  // namespace drumhead::grid

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <drumhead/grid/curve.h>
+#include <drumhead/grid/lattice.h>
 
 namespace drumhead::grid {
 
@@ -13,5 +14,11 @@ constexpr double kSnap = 1e-9;
 /// Parameters in (0, 1), ascending, at which a curve in cell units meets an integer x or y. Points
 /// within 1e-9 of a line count as on it and yield no crossing on their own.
 void find_crossings(const CubicBezier& curve, std::vector<double>& out);
+
+/// Cell of a coordinate, 0…n−1: points on a line belong to the cell of larger index.
+int cell_index(double x, int n);
+
+/// Throws std::invalid_argument: the source leaves the lattice at a point given in cells.
+[[noreturn]] void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice);
 
 }  // namespace drumhead::grid

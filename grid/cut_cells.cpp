@@ -76,22 +76,6 @@ bool constant_speed(const CubicBezier& curve) {
   return length(b - a) <= tiny && length(c - b) <= tiny;
 }
 
-/// Cell index of a coordinate: points on a line belong to the cell of larger index.
-int cell_index(double x, int n) {
-  const double nearest = std::round(x);
-  const double snapped = std::abs(x - nearest) < kSnap ? nearest : std::floor(x);
-  return std::clamp(int(snapped), 0, n - 1);
-}
-
-[[noreturn]] void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice) {
-  const Point px = lattice.origin_px + lattice.cell_px * cells;
-  const Point end = lattice.rest_px(lattice.nx, lattice.ny);
-  auto text = [](Point p) { return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")"; };
-  throw std::invalid_argument("curve '" + curve.name + "': the source leaves the lattice at " +
-                              text(px) + " px; it reaches from " + text(lattice.origin_px) +
-                              " to " + text(end));
-}
-
 class Cutter {
  public:
   Cutter(const Lattice& lattice, double most_weight)

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+#include <drumhead/grid/conforming.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "conforming_pressures.h"
+#include "curve_nodes.h"
+#include "split_cell.h"
+
+namespace drumhead::grid {
+namespace {
+
+// Displacements that differ by more than this many times the distance of their points contradict
+// one another: no lattice of this spacing can carry such a strain.
+constexpr double kStrain = 3.0;
+constexpr double kLeastConflict = 1e-6;  // cells
+
+class Conformer {
+ public:
+  Conformer(const std::vector<CurvePair>& curves, const Lattice& lattice,
+            const ConformOptions& options)
+      : curves_(curves), lattice_(lattice), options_(options) {
+    for (const CurvePair& curve : curves) walks_.push_back(walk(curve, lattice));
+  }
+
+  ConformingCells run() {
+    while (!assemble()) {
+    }
+    hold_nodes();
+    share_pressures(cells_, options_.least_area);
+    cells_.simplified_cells = int(simplified_.size());
+    cells_.lost_tips = nodes_.lost_tips;
+    return std::move(cells_);
+  }
+
+ private:
+  Vertex lattice_node(int i, int j) const { return Vertex(j) * (lattice_.nx + 1) + i; }
+  Vertex first_curve_node() const { return lattice_node(0, lattice_.ny + 1); }
+  std::int64_t cell_number(CellIndex c) const { return std::int64_t(c.j) * lattice_.nx + c.i; }
+
+  bool assemble();
+  std::vector<std::int64_t> special_cells() const;
+  std::vector<CellVertex> outline(CellIndex cell) const;
+  bool add_cell(CellIndex cell, const std::vector<Chord>& chords);
+  void hold_nodes();
+  HeldNode held(Point rest, const std::vector<int>& visits, bool fixed);
+  void note(const Visit& a, const Visit& b, Point rest, double distance);
+
+  const std::vector<CurvePair>& curves_;
+  const Lattice& lattice_;
+  const ConformOptions& options_;
+  std::vector<CurveWalk> walks_;
+  SimplifiedCells simplified_;
+  CurveNodes nodes_;
+  std::size_t edge_nodes_ = 0;  // curve nodes on edges; the ones in cells follow
+  ConformingCells cells_;
+};
+
+/// Places the nodes and splits all special cells; false if some had to be simplified.
+bool Conformer::assemble() {
+  nodes_ = place_nodes(walks_, curves_, lattice_, options_.snap, simplified_);
+  edge_nodes_ = nodes_.edge.size();
+  cells_ = {};
+  cells_.nx = lattice_.nx;
+  cells_.ny = lattice_.ny;
+  cells_.cell_begin.assign(std::size_t(lattice_.ny) + 1, 0);
+  cells_.part_begin = cells_.part_node_begin = cells_.part_triangle_begin = {0};
+  std::vector<Chord> chords = nodes_.chords, inside;
+  std::ranges::stable_sort(chords, {}, [&](const Chord& c) { return cell_number(c.cell); });
+  auto next = chords.begin();
+  bool good = true;
+  for (const std::int64_t number : special_cells()) {
+    const CellIndex cell{int(number % lattice_.nx), int(number / lattice_.nx)};
+    for (inside.clear(); next != chords.end() && cell_number(next->cell) <= number; ++next)
+      inside.push_back(*next);
+    if (add_cell(cell, inside)) continue;
+    good = false;
+    Simplified& level = simplified_[number];
+    assert(level != Simplified::at_rest);
+    level = Simplified(int(level) + 1);
+  }
+  for (std::size_t j = 0; j < std::size_t(lattice_.ny); ++j)
+    cells_.cell_begin[j + 1] += cells_.cell_begin[j];
+  return good;
+}
+
+/// Cells with a chord, a curve node or a moved corner, ascending.
+std::vector<std::int64_t> Conformer::special_cells() const {
+  std::vector<std::int64_t> numbers;
+  auto add = [&](int i, int j) {
+    if (i >= 0 && j >= 0 && i < lattice_.nx && j < lattice_.ny)
+      numbers.push_back(cell_number({i, j}));
+  };
+  for (std::size_t n = 0; n < nodes_.held.size(); ++n) {
+    const int i = int(nodes_.held[n] % (lattice_.nx + 1)),
+              j = int(nodes_.held[n] / (lattice_.nx + 1));
+    if (nodes_.held_rest[n] == Point{double(i), double(j)}) continue;
+    for (int c = 0; c < 4; ++c) add(i - (c & 1), j - (c >> 1));
+  }
+  for (std::size_t k = 0; k < edge_nodes_; ++k) {
+    const CellIndex c = nodes_.cell[k];
+    add(c.i, c.j);
+    nodes_.edge[k] % 2 ? add(c.i - 1, c.j) : add(c.i, c.j - 1);
+  }
+  for (const Chord& chord : nodes_.chords) add(chord.cell.i, chord.cell.j);
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+std::vector<CellVertex> Conformer::outline(CellIndex cell) const {
+  std::vector<CellVertex> vertices;
+  auto corner = [&](int code, unsigned sides) {
+    const int i = cell.i + (code & 1), j = cell.j + (code >> 1);
+    const int held = nodes_.find_held(lattice_node(i, j));
+    const Point rest = held < 0 ? Point{double(i), double(j)} : nodes_.held_rest[std::size_t(held)];
+    const bool edge = i == 0 || j == 0 || i == lattice_.nx || j == lattice_.ny;
+    vertices.push_back({lattice_node(i, j), code, rest, sides, held >= 0 || edge});
+  };
+  const auto end = nodes_.edge.begin() + std::ptrdiff_t(edge_nodes_);
+  auto side = [&](EdgeIndex edge, unsigned bit, bool backwards) {
+    const auto [from, to] = std::equal_range(nodes_.edge.begin(), end, edge);
+    const std::size_t first = vertices.size();
+    for (auto at = from; at != to; ++at) {
+      const std::size_t k = std::size_t(at - nodes_.edge.begin());
+      vertices.push_back(
+          {first_curve_node() + Vertex(k), 4 + int(k), nodes_.curve_rest[k], bit, true});
+    }
+    if (backwards) std::reverse(vertices.begin() + std::ptrdiff_t(first), vertices.end());
+  };
+  const Vertex node = lattice_node(cell.i, cell.j);
+  corner(0, 1 | 8);
+  side(2 * node, 1, false);
+  corner(1, 1 | 2);
+  side(2 * (node + 1) + 1, 2, false);
+  corner(3, 2 | 4);
+  side(2 * (node + lattice_.nx + 1), 4, true);
+  corner(2, 4 | 8);
+  side(2 * node + 1, 8, true);
+  return vertices;
+}
+
+/// Appends a special cell; a cell that is whole and in its place stays regular.
+bool Conformer::add_cell(CellIndex cell, const std::vector<Chord>& chords) {
+  CellSplit split(cell, outline(cell), first_curve_node(), nodes_);
+  const std::vector<CellVertex> corners = split.vertices();
+  for (const Chord& chord : chords)
+    if (!split.add(chord)) return false;
+  const bool whole = split.parts().size() == 1 && corners.size() == 4;
+  const bool in_place = std::ranges::all_of(corners, [&](const CellVertex& v) {
+    return v.rest == Point{double(cell.i + (v.code & 1)), double(cell.j + (v.code >> 1))};
+  });
+  if (whole && in_place) return true;
+  for (const std::vector<int>& part : split.parts()) {
+    const std::size_t first = cells_.triangle.size();
+    if (!split.triangulate(part, cells_.triangle)) return false;
+    double area = 0.0;
+    Point moment;
+    for (std::size_t t = first; t < cells_.triangle.size(); ++t) {
+      const PartTriangle& triangle = cells_.triangle[t];
+      area += triangle.area;
+      for (const int n : triangle.node)
+        moment = moment +
+                 (triangle.area / 3.0) * split.vertices()[std::size_t(part[std::size_t(n)])].rest;
+    }
+    for (const int n : part) cells_.part_node.push_back(split.vertices()[std::size_t(n)].code);
+    cells_.part_node_begin.push_back(int(cells_.part_node.size()));
+    cells_.part_triangle_begin.push_back(int(cells_.triangle.size()));
+    cells_.part_area.push_back(area);
+    cells_.part_centre.push_back((1.0 / area) * moment);
+  }
+  std::array<int, 4> held{};
+  for (const CellVertex& v : corners)
+    if (v.code < 4) held[std::size_t(v.code)] = nodes_.find_held(v.vertex);
+  cells_.cell_corner.push_back(held);
+  cells_.cell_column.push_back(cell.i);
+  cells_.part_begin.push_back(cells_.parts());
+  ++cells_.cell_begin[std::size_t(cell.j) + 1];
+  return true;
+}
+
+void Conformer::note(const Visit& a, const Visit& b, Point rest, double distance) {
+  cells_.conflicts.push_back({rest, distance, a.curve, b.curve});
+}
+
+/// What the visits of one node ask for together (rule 6); `fixed`: it lies on the outer boundary.
+HeldNode Conformer::held(Point rest, const std::vector<int>& visits, bool fixed) {
+  auto visit = [&](int n) -> const Visit& { return nodes_.visits[std::size_t(n)]; };
+  auto stiffness = [&](int n) {
+    const double d = curves_[std::size_t(visit(n).curve)].weight;
+    return d * (lattice_.cell_px / lattice_.side_px) * visit(n).arc;
+  };
+  auto hard = [&](int n) { return std::isinf(curves_[std::size_t(visit(n).curve)].weight); };
+  const bool any_hard = fixed || std::ranges::any_of(visits, hard);
+  int nearest = -1;
+  for (const int n : visits)
+    if ((hard(n) || !any_hard || fixed) &&
+        (nearest < 0 || length(visit(n).source - rest) < length(visit(nearest).source - rest)))
+      nearest = n;
+  const Visit& first = visit(nearest);
+  const Point base = fixed ? Point{} : first.displacement;
+  const Visit* worst = nullptr;
+  double largest = 0.0, total = 0.0, weight = 0.0;
+  Point mean;
+  for (const int n : visits) {
+    const double distance = length(visit(n).displacement - base);
+    const double apart = length(visit(n).source - (fixed ? rest : first.source));
+    const bool against = distance > kStrain * apart + kLeastConflict;
+    if (against && distance > largest) {
+      largest = distance;
+      worst = &visit(n);
+    }
+    if (any_hard && !hard(n)) continue;
+    const double w = any_hard ? 1.0 : stiffness(n);
+    total += w;
+    weight += w;
+    // A branch that agrees says the same as the nearest one, which lies on the node.
+    mean = mean + w * (against ? visit(n).displacement : base);
+  }
+  if (worst != nullptr) note(first, *worst, rest, largest);
+  HeldNode node{rest, base, any_hard ? std::numeric_limits<double>::infinity() : total};
+  if (!fixed && weight > 0.0) node.wanted = (1.0 / weight) * mean;
+  return node;
+}
+
+void Conformer::hold_nodes() {
+  std::vector<int> order(nodes_.visits.size());
+  std::iota(order.begin(), order.end(), 0);
+  auto vertex = [&](int n) { return nodes_.visits[std::size_t(n)].vertex; };
+  std::ranges::stable_sort(order, {}, vertex);
+  cells_.node_begin.assign(std::size_t(lattice_.ny) + 2, 0);
+  cells_.curve_node.resize(nodes_.curve_rest.size());
+  std::vector<int> group;
+  for (std::size_t n = 0; n < order.size();) {
+    const Vertex at = vertex(order[n]);
+    for (group.clear(); n < order.size() && vertex(order[n]) == at; ++n) group.push_back(order[n]);
+    if (at >= first_curve_node()) {
+      const std::size_t k = std::size_t(at - first_curve_node());
+      const Point rest = nodes_.curve_rest[k];
+      const bool fixed =
+          rest.x == 0.0 || rest.y == 0.0 || rest.x == lattice_.nx || rest.y == lattice_.ny;
+      cells_.curve_node[k] = held(rest, group, fixed);
+      continue;
+    }
+    const int i = int(at % (lattice_.nx + 1)), j = int(at / (lattice_.nx + 1));
+    const int k = nodes_.find_held(at);
+    if (k < 0) {  // a boundary node, which is fixed anyway
+      held({double(i), double(j)}, group, true);
+      continue;
+    }
+    cells_.node.push_back(held(nodes_.held_rest[std::size_t(k)], group, false));
+    cells_.node_column.push_back(i);
+    ++cells_.node_begin[std::size_t(j) + 1];
+  }
+  assert(cells_.node.size() == nodes_.held.size());
+  for (std::size_t j = 0; j + 1 < cells_.node_begin.size(); ++j)
+    cells_.node_begin[j + 1] += cells_.node_begin[j];
+  cells_.curve_cell.reserve(nodes_.cell.size());
+  for (std::size_t k = 0; k < nodes_.cell.size(); ++k) {
+    cells_.curve_cell.push_back({nodes_.cell[k].i, nodes_.cell[k].j});
+    const EdgeIndex edge = nodes_.edge[k];
+    cells_.curve_place.push_back(edge == kNoEdge
+                                     ? NodePlace::in_cell
+                                     : (edge % 2 ? NodePlace::on_y_edge : NodePlace::on_x_edge));
+  }
+}
+
+}  // namespace
+
+ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
+                        const ConformOptions& options) {
+  if (!(options.snap > 0.0 && options.snap <= 0.25))
+    throw std::invalid_argument("snap = " + std::to_string(options.snap) +
+                                ": must be above 0 and at most 0.25");
+  for (const CurvePair& curve : curves)
+    if (!(curve.weight > 0.0))
+      throw std::invalid_argument("curve '" + curve.name +
+                                  "': weight = " + std::to_string(curve.weight) +
+                                  ": must be positive (infinity allowed)");
+  return Conformer(curves, lattice, options).run();
+}
+
+Lattice coarsened(const Lattice& fine) {
+  Lattice coarse = fine;
+  coarse.nx = coarse_cells(fine.nx);
+  coarse.ny = coarse_cells(fine.ny);
+  coarse.cell_px = 2.0 * fine.cell_px;
+  return coarse;
+}
+
+int ConformingCells::find_cell(int i, int j) const {
+  const auto begin = cell_column.begin() + cell_begin[std::size_t(j)],
+             end = cell_column.begin() + cell_begin[std::size_t(j) + 1];
+  const auto at = std::lower_bound(begin, end, i);
+  return at != end && *at == i ? int(at - cell_column.begin()) : -1;
+}
+
+int ConformingCells::find_node(int i, int j) const {
+  const auto begin = node_column.begin() + node_begin[std::size_t(j)],
+             end = node_column.begin() + node_begin[std::size_t(j) + 1];
+  const auto at = std::lower_bound(begin, end, i);
+  return at != end && *at == i ? int(at - node_column.begin()) : -1;
+}
+
+}  // namespace drumhead::grid
