@@ -19,6 +19,17 @@ drumhead_test(NAME oracle_energy_test SOURCES oracle_energy_test.cpp LINK drumhe
 drumhead_test(NAME oracle_grid_cut_test
   SOURCES oracle_grid_cut_test.cpp support/scene_problem.cpp
   LINK drumhead_oracle drumhead::grid drumhead::multigrid LABEL unit)
+
+# The same for conforming cells, whose geometry is the library's own.
+add_library(drumhead_conforming_oracle STATIC
+  support/oracle_conforming.cpp support/oracle_conforming_newton.cpp support/scene_problem.cpp)
+drumhead_compile_settings(drumhead_conforming_oracle)
+target_compile_options(drumhead_conforming_oracle PRIVATE -O2)
+target_link_libraries(drumhead_conforming_oracle
+  PUBLIC drumhead_oracle drumhead::grid drumhead::multigrid)
+drumhead_test(NAME oracle_conforming_test
+  SOURCES oracle_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
+
 foreach(name exact default nested)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp

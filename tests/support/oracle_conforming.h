@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The membrane on conforming cells, assembled: the yardstick of the kernels that go over them, with
+// which it shares nothing but the geometry (grid::ConformingCells). Lengths are in cells, positions
+// (not displacements) are the unknowns. With a(x, r) the deformed area of the polygons of row r and
+// A_r their area at rest,
+//
+//     L(x, P) = sum_regular cells  mu/4 (|x10−x00|² + |x11−x01|² + |x01−x00|² + |x11−x10|²)
+//             + sum_triangles      mu/2 A_t |F_t|²
+//             + sum_held, soft     s/2 |x − target|²
+//             + sum_rows           P (a − A) − A P²/(2 kappa)
+//
+// A row is a regular cell, or the parts of special cells that share a pressure: the deformed area
+// of a cell is J* of its centre, that of a part the sum of A_t J_t, and both are their outline's
+// shoelace formula. Nodes: lattice nodes j·(nx+1) + i, then the curve nodes.
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include <drumhead/grid/conforming.h>
+
+namespace drumhead::oracle {
+
+/// Two coordinates for every node, in cells.
+using Positions = Eigen::MatrixX2d;
+
+struct ConformingRow {
+  std::vector<std::vector<int>> outline;  ///< polygons, counter-clockwise
+  double area = 0.0;
+  double kappa = 0.0;  ///< > 0, infinity allowed
+};
+
+struct ConformingMembrane {
+  grid::ConformingCells cells;
+  Positions rest, target;  ///< target: of the known and the soft nodes; elsewhere rest
+  std::vector<char> known;
+  Eigen::VectorXd spring;                 ///< s, 0 where no soft curve holds the node
+  Eigen::SparseMatrix<double> stiffness;  ///< of the triangles and regular cells, all nodes
+  std::vector<ConformingRow> rows;
+  std::vector<int> unknown;  ///< number of a node among the unknown ones, −1: known
+  int unknowns = 0;          ///< nodes
+};
+
+/// mu = 1; kappa per lattice cell, i fastest (special cells hand theirs to their parts).
+ConformingMembrane conforming_membrane(const std::vector<grid::CurvePair>& curves,
+                                       const grid::Lattice& lattice,
+                                       const std::vector<double>& kappa,
+                                       const grid::ConformOptions& options = {});
+
+struct ConformingState {
+  Positions x;
+  Eigen::VectorXd P;  ///< per row
+};
+
+double deformed_area(const ConformingRow& row, const Positions& x);
+/// B: derivatives of the deformed areas with respect to the unknowns (x, then y).
+Eigen::SparseMatrix<double> area_derivatives(const ConformingMembrane& membrane,
+                                             const Positions& x);
+/// Second derivatives of L in x with the given pressures.
+Eigen::SparseMatrix<double> hessian(const ConformingMembrane& membrane,
+                                    const Eigen::VectorXd& pressure);
+double elastic_energy(const ConformingMembrane& membrane, const Positions& x);
+double spring_energy(const ConformingMembrane& membrane, const Positions& x);
+
+/// Energies per mu and lattice area; elastic is 1 at rest.
+struct ConformingEnergy {
+  double elastic = 0.0, volume = 0.0, constraint = 0.0;
+  double total() const { return elastic + volume + constraint; }
+};
+ConformingEnergy energy(const ConformingMembrane& membrane, const ConformingState& state);
+
+/// ∂L/∂x of the unknown nodes (x, then y), then ∂L/∂P.
+Eigen::VectorXd gradient(const ConformingMembrane& membrane, const ConformingState& state);
+
+struct ConformingResult {
+  ConformingState state;
+  bool converged = false;
+  int steps = 0;
+  int folded_triangles = 0, folded_cells = 0;  ///< regular cells with a corner J < 0
+};
+/// Newton's method with the clamp schedule from the solution without pressures; each system is
+/// solved directly, pressures condensed with kappa ≤ 1e4 and what that leaves refined away.
+ConformingResult newton(const ConformingMembrane& membrane, int most_steps = 60);
+
+/// Displacement at a rest position, both in cells.
+Eigen::Vector2d displacement_at(const ConformingMembrane& membrane, const ConformingState& state,
+                                Eigen::Vector2d at);
+
+}  // namespace drumhead::oracle
