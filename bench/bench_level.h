@@ -82,6 +82,7 @@ class BenchLevel {
             .weight = weight_.data(),
             .compliance = compliance_.data(),
             .length = length_.data(),
+            .link_diagonal = link_diagonal_.data(),
             .link_begin = cuts_.link_begin.data(),
             .link = cuts_.link.data(),
             .link_strength = strength_.data(),
@@ -142,10 +143,13 @@ class BenchLevel {
       for (const double w : four) weight_.push_back(T(w));
     compliance_.assign(cuts_.compliance.begin(), cuts_.compliance.end());
     length_.assign(cuts_.length.begin(), cuts_.length.end());
+    link_diagonal_.assign(length_.size(), T(0));
     for (std::size_t k = 0; k < length_.size(); ++k)
       for (int l = cuts_.link_begin[k]; l < cuts_.link_begin[k + 1]; ++l) {
         const T shorter = std::min(length_[k], length_[std::size_t(cuts_.link[std::size_t(l)])]);
-        strength_.push_back(shorter * shorter);
+        const T other = length_[std::size_t(cuts_.link[std::size_t(l)])];
+        strength_.push_back(shorter * shorter / (length_[k] * other));
+        link_diagonal_[k] += shorter * shorter / (length_[k] * length_[k]);
       }
     dq.assign(2 * length_.size(), T(0));
     fq.assign(2 * length_.size(), T(0.01));
@@ -158,7 +162,7 @@ class BenchLevel {
   grid::MemoryMeter meter_;
   grid::Field<T> ux_, uy_, pressure_;
   grid::CutCells cuts_;
-  std::vector<T> weight_, compliance_, length_, strength_;
+  std::vector<T> weight_, compliance_, length_, link_diagonal_, strength_;
 
  public:
   grid::UnknownFields<T> d, f, out, coarse_d, coarse_f;

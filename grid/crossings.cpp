@@ -98,4 +98,10 @@ void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice)
                               " to " + text(end));
 }
 
+void add_turning_points(const CubicBezier& curve, std::vector<double>& out) {
+  const auto& p = curve.control;
+  add_turning_points(Cubic{p[0].x, p[1].x, p[2].x, p[3].x}, out);
+  add_turning_points(Cubic{p[0].y, p[1].y, p[2].y, p[3].y}, out);
+}
+
 }  // namespace drumhead::grid

@@ -21,4 +21,7 @@ int cell_index(double x, int n);
 /// Throws std::invalid_argument: the source leaves the lattice at a point given in cells.
 [[noreturn]] void refuse_outside(const CurvePair& curve, Point cells, const Lattice& lattice);
 
+/// Appends the parameters in (0, 1) at which x or y turns back: x' = 0 or y' = 0.
+void add_turning_points(const CubicBezier& curve, std::vector<double>& out);
+
 }  // namespace drumhead::grid

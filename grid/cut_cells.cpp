@@ -16,6 +16,11 @@ constexpr double kShortestStay = 1e-3;   // cells
 constexpr double kLeastInterior = 0.02;  // of a row's weight
 constexpr double kQuadrature = 1e-10;    // relative
 
+struct Cell {
+  int i = -1, j = -1;
+  friend bool operator==(const Cell&, const Cell&) = default;
+};
+
 /// ∫ over an arc inside one cell of 1, the bilinear weights and target − source.
 struct Integral {
   double length = 0.0;
@@ -28,11 +33,15 @@ struct Integral {
     wanted = wanted + other.wanted;
     stiffness += other.stiffness;
   }
-};
-
-struct Cell {
-  int i = -1, j = -1;
-  friend bool operator==(const Cell&, const Cell&) = default;
+  void add_point(Cell cell, Point s, Point target, double ds) {
+    const double x = s.x - cell.i, y = s.y - cell.j;
+    length += ds;
+    weight[0] += ds * (1 - x) * (1 - y);
+    weight[1] += ds * x * (1 - y);
+    weight[2] += ds * (1 - x) * y;
+    weight[3] += ds * x * y;
+    wanted = wanted + ds * (target - s);
+  }
 };
 
 /// A curve's uninterrupted stay in one cell.
@@ -41,22 +50,20 @@ struct Stay {
   Integral integral;
 };
 
+Point on_line(const CubicBezier& line, double t) {
+  return line.control[0] + t * (line.control[3] - line.control[0]);
+}
+
 Integral gauss(const SegmentPair& pair, Cell cell, double t0, double t1) {
   Integral sum;
   for_gauss_points(t0, t1, [&](double t, double weight) {
-    const Point s = pair.source.at(t), target = pair.target.at(t);
-    const double ds = weight * length(pair.source.derivative(t));
-    const double x = s.x - cell.i, y = s.y - cell.j;
-    sum.length += ds;
-    const std::array<double, 4> n{(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
-    for (std::size_t c = 0; c < 4; ++c) sum.weight[c] += ds * n[c];
-    sum.wanted = sum.wanted + ds * (target - s);
+    sum.add_point(cell, pair.source.at(t), pair.target.at(t),
+                  weight * length(pair.source.derivative(t)));
   });
   return sum;
 }
 
-/// Halves the arc until the eight-point rule has converged; a straight arc of constant speed has at
-/// once.
+/// Halves the arc until the eight-point rule has converged.
 Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, const Integral& whole,
                    int depth) {
   const double middle = 0.5 * (t0 + t1);
@@ -69,11 +76,14 @@ Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, con
   return sum;
 }
 
-bool constant_speed(const CubicBezier& curve) {
-  const auto& p = curve.control;
-  const Point a = p[1] - p[0], b = p[2] - p[1], c = p[3] - p[2];
-  const double tiny = 1e-13 * (length(a) + length(b) + length(c));
-  return length(b - a) <= tiny && length(c - b) <= tiny;
+/// Straight arcs at constant speed: weights are quadratic in t, which two points integrate exactly.
+Integral straight_arc(const SegmentPair& pair, Cell cell, double t0, double t1) {
+  Integral sum;
+  const double speed = length(pair.source.control[3] - pair.source.control[0]);
+  for_two_gauss_points(t0, t1, [&](double t, double weight) {
+    sum.add_point(cell, on_line(pair.source, t), on_line(pair.target, t), weight * speed);
+  });
+  return sum;
 }
 
 class Cutter {
@@ -104,17 +114,18 @@ class Cutter {
                    std::vector<Stay>& stays) const {
     find_crossings(pair.source, crossings);
     crossings.push_back(1.0);
-    const bool simple = constant_speed(pair.source) && constant_speed(pair.target);
+    const bool simple = pair.source.constant_speed() && pair.target.constant_speed();
     double t0 = 0.0;
     for (const double t1 : crossings) {
       if (t1 <= t0) continue;
-      const Point middle = pair.source.at(0.5 * (t0 + t1));
+      const Point middle =
+          simple ? on_line(pair.source, 0.5 * (t0 + t1)) : pair.source.at(0.5 * (t0 + t1));
       if (middle.x < -kSnap || middle.y < -kSnap || middle.x > lattice_.nx + kSnap ||
           middle.y > lattice_.ny + kSnap)
         refuse_outside(curve, middle, lattice_);
       const Cell cell{cell_index(middle.x, lattice_.nx), cell_index(middle.y, lattice_.ny)};
-      Integral arc = gauss(pair, cell, t0, t1);
-      if (!simple) arc = integrate(pair, cell, t0, t1, arc, 20);
+      const Integral arc = simple ? straight_arc(pair, cell, t0, t1)
+                                  : integrate(pair, cell, t0, t1, gauss(pair, cell, t0, t1), 20);
       if (stays.empty() || !(stays.back().cell == cell)) stays.push_back({cell, {}});
       stays.back().integral.add(arc);
       t0 = t1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Gauss–Legendre quadrature with eight points: exact for polynomials of degree 15.
+// Gauss–Legendre quadrature: two points are exact for polynomials of degree 3, eight for 15.
 #include <array>
 
 namespace drumhead::grid {
@@ -17,6 +17,15 @@ void for_gauss_points(double t0, double t1, F&& f) {
     f(middle - half * node[n], half * weight[n]);
     f(middle + half * node[n], half * weight[n]);
   }
+}
+
+/// The same with two points.
+template <class F>
+void for_two_gauss_points(double t0, double t1, F&& f) {
+  constexpr double node = 0.5773502691896258;  // 1/√3
+  const double middle = 0.5 * (t0 + t1), half = 0.5 * (t1 - t0);
+  f(middle - half * node, half);
+  f(middle + half * node, half);
 }
 
 }  // namespace drumhead::grid

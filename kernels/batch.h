@@ -36,10 +36,8 @@ struct Lane<double> {
 
 inline float smaller(float a, float b) { return b < a ? b : a; }
 inline float larger(float a, float b) { return a < b ? b : a; }
-inline float magnitude(float a) { return std::fabs(a); }
 inline double smaller(double a, double b) { return b < a ? b : a; }
 inline double larger(double a, double b) { return a < b ? b : a; }
-inline double magnitude(double a) { return std::fabs(a); }
 template <class T, class A>
 xsimd::batch<T, A> smaller(xsimd::batch<T, A> a, xsimd::batch<T, A> b) {
   return xsimd::min(b, a);
@@ -47,10 +45,6 @@ xsimd::batch<T, A> smaller(xsimd::batch<T, A> a, xsimd::batch<T, A> b) {
 template <class T, class A>
 xsimd::batch<T, A> larger(xsimd::batch<T, A> a, xsimd::batch<T, A> b) {
   return xsimd::max(b, a);
-}
-template <class T, class A>
-xsimd::batch<T, A> magnitude(xsimd::batch<T, A> a) {
-  return xsimd::abs(a);
 }
 
 #if DRUMHEAD_ISA_LEVEL >= 3

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/cuts.h>
 
+#include <type_traits>
+
 namespace drumhead::kernels {
 namespace {
 
@@ -11,49 +13,50 @@ void for_cuts(const Cuts<T>& cuts, int rows, F&& body) {
     for (int k = cuts.row_begin[j]; k < cuts.row_begin[j + 1]; ++k) body(k, cuts.column[k], j);
 }
 
+/// A field's values at the corners 00, 10, 01, 11 of cell (i, j).
 template <class T>
-T average(const Cuts<T>& cuts, const Plane<const T>& d, int k, int i, int j) {
-  const T* w = cuts.weight + 4 * k;
-  return (w[0] * d.at(i, j) + w[1] * d.at(i + 1, j)) +
-         (w[2] * d.at(i, j + 1) + w[3] * d.at(i + 1, j + 1));
-}
-
-template <class T>
-void scatter(const T* w, T value, const Plane<T>& f, int i, int j) {
-  f.at(i, j) += w[0] * value;
-  f.at(i + 1, j) += w[1] * value;
-  f.at(i, j + 1) += w[2] * value;
-  f.at(i + 1, j + 1) += w[3] * value;
-}
+struct CellCorners {
+  T* corner[4];
+  CellCorners(const Plane<T>& f, int i, int j) {
+    T* const west = f.half(j, i & 1) + (i >> 1);
+    T* const east = f.half(j, (i + 1) & 1) + ((i + 1) >> 1);
+    corner[0] = west;
+    corner[1] = east;
+    corner[2] = west + f.stride;
+    corner[3] = east + f.stride;
+  }
+  auto average(const std::remove_const_t<T>* w) const {
+    return (w[0] * *corner[0] + w[1] * *corner[1]) + (w[2] * *corner[2] + w[3] * *corner[3]);
+  }
+  void add(const T* w, T value) const {
+    for (int c = 0; c < 4; ++c) *corner[c] += w[c] * value;
+  }
+};
 
 }  // namespace
 
 template <class T>
 T cut_compliance_diagonal(const Cuts<T>& cuts, int k) {
-  T sum = T(0);
-  for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l) sum += cuts.link_strength[l];
-  return cuts.compliance[k] + cuts.jump * sum / (cuts.length[k] * cuts.length[k]);
+  return cuts.compliance[k] + cuts.jump * cuts.link_diagonal[k];
 }
 
 template <class T>
 Pair<T> cut_compliance(const Cuts<T>& cuts, const T* q, int k) {
   T x = T(0), y = T(0);
-  const T own = T(1) / cuts.length[k];
   for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l) {
     const int other = cuts.link[l];
-    const T theirs = T(1) / cuts.length[other];
-    x += cuts.link_strength[l] * (q[2 * k] * own - q[2 * other] * theirs);
-    y += cuts.link_strength[l] * (q[2 * k + 1] * own - q[2 * other + 1] * theirs);
+    x += cuts.link_strength[l] * q[2 * other];
+    y += cuts.link_strength[l] * q[2 * other + 1];
   }
-  return {cuts.compliance[k] * q[2 * k] + cuts.jump * own * x,
-          cuts.compliance[k] * q[2 * k + 1] + cuts.jump * own * y};
+  const T own = cut_compliance_diagonal(cuts, k);
+  return {own * q[2 * k] - cuts.jump * x, own * q[2 * k + 1] - cuts.jump * y};
 }
 
 template <class T>
 void add_curve_force(const Cuts<T>& cuts, const T* q, T scale, const Unknowns<T>& f) {
   for_cuts(cuts, f.x.rows - 1, [&](int k, int i, int j) {
-    scatter(cuts.weight + 4 * k, scale * q[2 * k], f.x, i, j);
-    scatter(cuts.weight + 4 * k, scale * q[2 * k + 1], f.y, i, j);
+    CellCorners<T>(f.x, i, j).add(cuts.weight + 4 * k, scale * q[2 * k]);
+    CellCorners<T>(f.y, i, j).add(cuts.weight + 4 * k, scale * q[2 * k + 1]);
   });
 }
 
@@ -61,8 +64,8 @@ template <class T>
 void apply_cuts(const Cuts<T>& cuts, const Unknowns<const T>& d, const T* q, T* out) {
   for_cuts(cuts, d.x.rows - 1, [&](int k, int i, int j) {
     const Pair<T> m = cut_compliance(cuts, q, k);
-    out[2 * k] = -(average(cuts, d.x, k, i, j) + m.x);
-    out[2 * k + 1] = -(average(cuts, d.y, k, i, j) + m.y);
+    out[2 * k] = -(CellCorners<const T>(d.x, i, j).average(cuts.weight + 4 * k) + m.x);
+    out[2 * k + 1] = -(CellCorners<const T>(d.y, i, j).average(cuts.weight + 4 * k) + m.y);
   });
 }
 
@@ -70,8 +73,9 @@ template <class T>
 void cuts_residual(const Cuts<T>& cuts, const T* f, const Unknowns<const T>& d, const T* q, T* r) {
   for_cuts(cuts, d.x.rows - 1, [&](int k, int i, int j) {
     const Pair<T> m = cut_compliance(cuts, q, k);
-    r[2 * k] = f[2 * k] + (average(cuts, d.x, k, i, j) + m.x);
-    r[2 * k + 1] = f[2 * k + 1] + (average(cuts, d.y, k, i, j) + m.y);
+    r[2 * k] = f[2 * k] + (CellCorners<const T>(d.x, i, j).average(cuts.weight + 4 * k) + m.x);
+    r[2 * k + 1] =
+        f[2 * k + 1] + (CellCorners<const T>(d.y, i, j).average(cuts.weight + 4 * k) + m.y);
   });
 }
 
@@ -79,33 +83,30 @@ template <class T>
 void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g, T* dq,
                     const Unknowns<T>& d, const Unknowns<T>& f, bool reverse, int j) {
   const int begin = cuts.row_begin[j], end = cuts.row_begin[j + 1];
+  // Weights on the fixed boundary are 0, so its diagonal does not matter.
+  const T everywhere = T(1) / (T(4) * membrane.mu.value);
+  T inverse[4] = {everywhere, everywhere, everywhere, everywhere};
   for (int n = 0; n < end - begin; ++n) {
     const int k = reverse ? end - 1 - n : begin + n, i = cuts.column[k];
     const T* w = cuts.weight + 4 * k;
-    T inverse[4];
     if (membrane.inverse_diagonal) {
-      const Plane<const T>& plane = membrane.inverse_diagonal;
-      inverse[0] = plane.at(i, j);
-      inverse[1] = plane.at(i + 1, j);
-      inverse[2] = plane.at(i, j + 1);
-      inverse[3] = plane.at(i + 1, j + 1);
-    } else {
-      // Weights on the fixed boundary are 0, so its diagonal does not matter.
-      for (T& value : inverse) value = T(1) / (T(4) * membrane.mu.value);
+      const CellCorners<const T> at(membrane.inverse_diagonal, i, j);
+      for (int c = 0; c < 4; ++c) inverse[c] = *at.corner[c];
     }
-    const T s = (w[0] * w[0] * inverse[0] + w[1] * w[1] * inverse[1]) +
-                (w[2] * w[2] * inverse[2] + w[3] * w[3] * inverse[3]) +
-                cut_compliance_diagonal(cuts, k);
     const T move[4] = {w[0] * inverse[0], w[1] * inverse[1], w[2] * inverse[2], w[3] * inverse[3]};
+    const T s = (w[0] * move[0] + w[1] * move[1]) + (w[2] * move[2] + w[3] * move[3]) +
+                cut_compliance_diagonal(cuts, k);
+    const T step = T(-1) / s;
+    const CellCorners<T> x(d.x, i, j), y(d.y, i, j);
     const Pair<T> m = cut_compliance(cuts, dq, k);
-    const T tx = -(g[2 * k] + (average<T>(cuts, d.x, k, i, j) + m.x)) / s;
-    const T ty = -(g[2 * k + 1] + (average<T>(cuts, d.y, k, i, j) + m.y)) / s;
-    scatter(move, tx, d.x, i, j);
-    scatter(move, ty, d.y, i, j);
+    const T tx = step * (g[2 * k] + (x.average(w) + m.x));
+    const T ty = step * (g[2 * k + 1] + (y.average(w) + m.y));
+    x.add(move, tx);
+    y.add(move, ty);
     dq[2 * k] += tx;
     dq[2 * k + 1] += ty;
-    scatter(w, tx, f.x, i, j);
-    scatter(w, ty, f.y, i, j);
+    CellCorners<T>(f.x, i, j).add(w, tx);
+    CellCorners<T>(f.y, i, j).add(w, ty);
   }
 }
 

@@ -21,6 +21,7 @@ constexpr KernelTable<T> make_table() {
       .force_cells = force_cells_row<T>,
       .energy = energy_row<T>,
       .relax_nodes = relax_nodes_row<T>,
+      .start_nodes = start_nodes_row<T>,
       .relax_volume = relax_volume_row<T>,
       .kaczmarz_nodes = kaczmarz_nodes_row<T>,
       .kaczmarz_cells = kaczmarz_cells_row<T>,

@@ -27,6 +27,7 @@ struct KernelTable {
   void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved, EnergySums&, int j);
 
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
+  void (*start_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int j);
   void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
                        int j);
 

@@ -7,15 +7,26 @@
 #include "parallel.h"
 
 namespace drumhead::kernels {
+namespace {
+
+/// One value a row, of the calling thread, kept from call to call: solvers reduce without
+/// allocating.
+double* row_buffer(int rows) {
+  thread_local std::vector<double> values;
+  if (values.size() < std::size_t(rows)) values.resize(std::size_t(rows));
+  return values.data();
+}
+
+}  // namespace
 
 template <class T>
 double dot(const Plane<const T>& a, const Plane<const T>& b) {
   if (!a) return 0.0;
   const KernelTable<T>& kernels = table<T>();
-  std::vector<double> of_row(static_cast<std::size_t>(a.rows));
-  for_rows(0, a.rows, a.columns, [&](int j) { of_row[std::size_t(j)] = kernels.dot(a, b, j); });
+  double* const of_row = row_buffer(a.rows);
+  for_rows(0, a.rows, a.columns, [&](int j) { of_row[j] = kernels.dot(a, b, j); });
   double sum = 0.0;
-  for (const double row : of_row) sum += row;
+  for (int j = 0; j < a.rows; ++j) sum += of_row[j];
   return sum;
 }
 
@@ -27,11 +38,11 @@ double dot(const Unknowns<const T>& a, const Unknowns<const T>& b) {
 template <class T>
 double largest(const Plane<const T>& a) {
   const KernelTable<T>& kernels = table<T>();
-  std::vector<double> of_row(static_cast<std::size_t>(a.rows));
-  for_rows(0, a.rows, a.columns, [&](int j) { of_row[std::size_t(j)] = kernels.largest(a, j); });
+  double* const of_row = row_buffer(a.rows);
+  for_rows(0, a.rows, a.columns, [&](int j) { of_row[j] = kernels.largest(a, j); });
   double most = 0.0;
-  for (const double row : of_row)
-    if (row > most || row != row) most = row;
+  for (int j = 0; j < a.rows; ++j)
+    if (of_row[j] > most || of_row[j] != of_row[j]) most = of_row[j];
   return most;
 }
 

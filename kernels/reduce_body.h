@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Row sums and vector updates over whole fields.
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
 #include <drumhead/kernels/views.h>
+
 #include "batch.h"
 #include "sums.h"
 
@@ -15,18 +20,20 @@ template <class T>
   return sums.total();
 }
 
+/// The bits of |a| as an integer are ordered like |a|, with every NaN beyond infinity: a maximum
+/// that vectorises and keeps a NaN.
 template <class T>
 [[gnu::flatten]] double largest_row(const Plane<const T>& a, int j) {
-  T largest = T(0);
+  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+  Bits largest = 0;
   for (int parity = 0; parity < 2; ++parity) {
     const T* values = a.half(j, parity);
     for (int k = 0; k < half_count(a.columns, parity); ++k) {
-      const T size = magnitude(values[k]);
-      // A NaN comes in by the second test and stays, because no size is greater.
-      if (size > largest || size != size) largest = size;
+      const Bits size = std::bit_cast<Bits>(values[k]) & (~Bits(0) >> 1);
+      largest = size > largest ? size : largest;
     }
   }
-  return double(largest);
+  return double(std::bit_cast<T>(largest));
 }
 
 /// y = a x + b y; b = 0 does not read y.

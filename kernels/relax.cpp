@@ -109,7 +109,7 @@ class Restriction {
 };
 
 /// The sweeps of one relaxation in order.
-enum class Sweep { clear, prolong, nodes, volume, cuts, nothing, restriction };
+enum class Sweep { clear, prolong, start, nodes, volume, cuts, nothing, restriction };
 struct Stage {
   Sweep sweep;
   int colour = 0;  ///< of nodes, or parity of the cell rows
@@ -126,7 +126,7 @@ StageList list_stages(bool clear, bool prolong, bool volume, bool cuts, bool res
   StageList list;
   if (clear) list.add({Sweep::clear});
   if (prolong) list.add({Sweep::prolong});
-  for (int colour : {0, 1}) list.add({Sweep::nodes, colour});
+  for (int colour : {0, 1}) list.add({clear && colour == 0 ? Sweep::start : Sweep::nodes, colour});
   for (bool reverse : {false, true}) {
     const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
     auto add = [&](Sweep sweep) {
@@ -173,6 +173,9 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
         }
         if (d.p) kernels.prolong_cells(coarse_d->p, d.p, j);
         break;
+      case Sweep::start:
+        if (j > 0) kernels.start_nodes(level.membrane, f, d, j);
+        break;
       case Sweep::nodes:
         if (j > 0) kernels.relax_nodes(level.membrane, f, d, stage.colour, j);
         break;
@@ -203,7 +206,9 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   const double volume_weight =
       1.0 / (double(level.membrane.spacing) * double(level.membrane.spacing));
   scratch.forget();
-  std::vector<double> of_row(static_cast<std::size_t>(rows));
+  thread_local std::vector<double> of_row;  // of the calling thread, kept from call to call
+  of_row.resize(static_cast<std::size_t>(rows));
+  double* const at = of_row.data();
   for_rows_on_threads(0, rows, d.x.columns, [&](int j, int thread) {
     typename RowScratch<T>::Rows& buffer = scratch.rows(thread);
     auto square = [&](T* row, int columns) {
@@ -220,7 +225,7 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
       kernels.residual_cells(level.membrane, &f, d, split(buffer.p[0]), j);
       sum += volume_weight * square(buffer.p[0], d.p.columns);
     }
-    of_row[std::size_t(j)] = sum;
+    at[j] = sum;
   });
   double total = 0.0;
   for (const double sum : of_row) total += sum;

@@ -32,6 +32,30 @@ template <class T>
   });
 }
 
+/// The same for red nodes where all of d is 0: d = f/K_ii.
+template <class T>
+[[gnu::flatten]] void start_nodes_row(const Membrane<T>& m, const Unknowns<const T>& f,
+                                      const Unknowns<T>& d, int j) {
+  const int parity = j & 1;
+  const Range range = interior(d.x.columns, parity);
+  T *dx = d.x.half(j, parity), *dy = d.y.half(j, parity);
+  const T *fx = f.x.half(j, parity), *fy = f.y.half(j, parity);
+  auto scale = [&](auto&& inverse) {
+    for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
+      const auto by = inverse(lane, zero, k);
+      lane.store(lane.load(fx + k) * by, dx + k);
+      lane.store(lane.load(fy + k) * by, dy + k);
+    });
+  };
+  if (m.inverse_diagonal) {
+    const T* inverse = m.inverse_diagonal.half(j, parity);
+    scale([=](auto lane, auto, int k) { return lane.load(inverse + k); });
+  } else {
+    const T inverse = T(1) / (T(4) * m.mu.value);
+    scale([=](auto, auto zero, int) { return decltype(zero)(inverse); });
+  }
+}
+
 /// 1/K_ii at the four nodes of a cell; 0 on the fixed boundary.
 template <class B>
 struct CornerInverse {

@@ -15,11 +15,16 @@ CutRows<T>::CutRows(const grid::CutCells& cuts)
       length_(cuts.length.begin(), cuts.length.end()) {
   for (const auto& weight : cuts.weight)
     for (const double w : weight) weight_.push_back(T(w));
-  for (std::size_t k = 0; k < length_.size(); ++k)
+  for (std::size_t k = 0; k < length_.size(); ++k) {
+    T diagonal = T(0);
     for (int l = link_begin_[k]; l < link_begin_[k + 1]; ++l) {
-      const T shorter = std::min(length_[k], length_[std::size_t(link_[std::size_t(l)])]);
-      strength_.push_back(shorter * shorter);
+      const T own = length_[k], other = length_[std::size_t(link_[std::size_t(l)])];
+      const T shorter = std::min(own, other);
+      strength_.push_back(shorter * shorter / (own * other));
+      diagonal += shorter * shorter / (own * own);
     }
+    link_diagonal_.push_back(diagonal);
+  }
 }
 
 template <class T>
@@ -30,6 +35,7 @@ kernels::Cuts<T> CutRows<T>::view(T jump) const {
           .weight = weight_.data(),
           .compliance = compliance_.data(),
           .length = length_.data(),
+          .link_diagonal = link_diagonal_.data(),
           .link_begin = link_begin_.data(),
           .link = link_.data(),
           .link_strength = strength_.data(),
@@ -39,7 +45,9 @@ kernels::Cuts<T> CutRows<T>::view(T jump) const {
 template <class T>
 std::size_t CutRows<T>::bytes() const {
   return (row_begin_.size() + column_.size() + link_begin_.size() + link_.size()) * sizeof(int) +
-         (weight_.size() + compliance_.size() + length_.size() + strength_.size()) * sizeof(T);
+         (weight_.size() + compliance_.size() + length_.size() + link_diagonal_.size() +
+          strength_.size()) *
+             sizeof(T);
 }
 
 template <class T>

@@ -31,7 +31,7 @@ class CutRows {
 
  private:
   std::vector<int> row_begin_, column_, link_begin_, link_;
-  std::vector<T> weight_, compliance_, length_, strength_;
+  std::vector<T> weight_, compliance_, length_, link_diagonal_, strength_;
 };
 
 /// Transfer of q to the next coarser level: q_c = share·q_parent.

@@ -2,9 +2,10 @@
 #pragma once
 // Newton's method on one level, globalised by the clamp schedule: the pressure in the Hessian is
 // P_H = clamp(P − median P, ±theta mu). With theta = 1 the elastic block is positive definite;
-// theta grows eightfold with every full step until the Hessian is exact, and shrinks with every
-// shortened one. Plain Newton diverges on two thirds of the hard scenes. The step length is halved
-// on a merit function in which the multipliers are those of the full step.
+// theta grows eightfold where full steps are limited by the clamp rather than by the linear solver,
+// and shrinks with every shortened step. Plain Newton diverges on two thirds of the hard scenes. A
+// full step that brings all equations closer to zero is taken as it is; otherwise the step length is
+// halved on a merit function in which the multipliers are those of the full step.
 #include <drumhead/multigrid/warp.h>
 
 #include "krylov.h"

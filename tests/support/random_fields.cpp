@@ -148,11 +148,14 @@ void RandomCuts<T>::join(Random& random) {
     }
   link_begin.push_back(0);
   for (std::size_t k = 0; k < count; ++k) {
+    T diagonal = T(0);
     for (const int l : links[k]) {
-      const T shorter = std::min(length[k], length[std::size_t(l)]);
+      const T own = length[k], other = length[std::size_t(l)], shorter = std::min(own, other);
       link.push_back(l);
-      strength.push_back(shorter * shorter);
+      strength.push_back(shorter * shorter / (own * other));
+      diagonal += shorter * shorter / (own * own);
     }
+    link_diagonal.push_back(diagonal);
     link_begin.push_back(int(link.size()));
   }
 }
@@ -165,6 +168,7 @@ kernels::Cuts<T> RandomCuts<T>::view() const {
           .weight = weight.data(),
           .compliance = compliance.data(),
           .length = length.data(),
+          .link_diagonal = link_diagonal.data(),
           .link_begin = link_begin.data(),
           .link = link.data(),
           .link_strength = strength.data(),

@@ -97,7 +97,7 @@ struct LevelSpec {
 template <class T>
 struct RandomCuts {
   std::vector<int> row_begin, column, row, link_begin, link;
-  std::vector<T> weight, compliance, length, strength;
+  std::vector<T> weight, compliance, length, link_diagonal, strength;
   T jump = T(0);
   RandomCuts(const LevelSpec& spec, Random& random);
   int size() const { return int(column.size()); }

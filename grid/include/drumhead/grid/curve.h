@@ -30,6 +30,8 @@ struct CubicBezier {
   std::array<Point, 4> control{};
   Point at(double t) const;
   Point derivative(double t) const;
+  /// A straight segment run through at constant speed.
+  bool constant_speed() const;
   /// The piece over [t0, t1] with its own parameter in [0, 1] (de Casteljau).
   CubicBezier piece(double t0, double t1) const;
 };

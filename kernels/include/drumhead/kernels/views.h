@@ -72,8 +72,8 @@ struct Membrane {
 
 /// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then
 /// column. Row k reads −W_k du − (M dq)_k for each component, with M q = compliance·q plus the jump
-/// term jump·Σ_links strength (q_k/len_k − q_l/len_l)/len_k. Weights of nodes on the fixed boundary
-/// are 0.
+/// term jump·Σ_links min(len_k, len_l)² (q_k/len_k − q_l/len_l)/len_k. Weights of nodes on the
+/// fixed boundary are 0.
 template <class T>
 struct Cuts {
   int count = 0;
@@ -83,9 +83,10 @@ struct Cuts {
   const T* weight = nullptr;         ///< four per cut: nodes 00, 10, 01, 11
   const T* compliance = nullptr;     ///< 1/(d len), 0: hard
   const T* length = nullptr;         ///< len, in finest cells
+  const T* link_diagonal = nullptr;  ///< one per cut: Σ_links min(len_k, len_l)²/len_k²
   const int* link_begin = nullptr;   ///< count+1 indices into link, link_strength
   const int* link = nullptr;         ///< cuts that follow or precede along a curve
-  const T* link_strength = nullptr;  ///< min(len_k, len_l)²
+  const T* link_strength = nullptr;  ///< min(len_k, len_l)²/(len_k len_l)
   T jump = T(0);                     ///< qs/mu; 0: exact rows
 };
 
