@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/cuts.h>
 
+#include <initializer_list>
 #include <type_traits>
 
 namespace drumhead::kernels {
@@ -12,6 +13,8 @@ void for_cuts(const Cuts<T>& cuts, int rows, F&& body) {
   for (int j = 0; j < rows; ++j)
     for (int k = cuts.row_begin[j]; k < cuts.row_begin[j + 1]; ++k) body(k, cuts.column[k], j);
 }
+
+constexpr int kAhead = 4;
 
 /// A field's values at the corners 00, 10, 01, 11 of cell (i, j).
 template <class T>
@@ -79,6 +82,13 @@ void cuts_residual(const Cuts<T>& cuts, const T* f, const Unknowns<const T>& d, 
   });
 }
 
+/// Asks for what cut k is going to read and write.
+template <class T>
+void prefetch(const Cuts<T>& cuts, const Unknowns<T>& d, const Unknowns<T>& f, int k, int j) {
+  for (const Plane<T>* plane : {&d.x, &d.y, &f.x, &f.y})
+    for (T* const at : CellCorners<T>(*plane, cuts.column[k], j).corner) __builtin_prefetch(at, 1);
+}
+
 template <class T>
 void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g, T* dq,
                     const Unknowns<T>& d, const Unknowns<T>& f, bool reverse, int j) {
@@ -86,8 +96,12 @@ void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g
   // Weights on the fixed boundary are 0, so its diagonal does not matter.
   const T everywhere = T(1) / (T(4) * membrane.mu.value);
   T inverse[4] = {everywhere, everywhere, everywhere, everywhere};
+  // Curves wander over rows that are no longer in the nearest cache.
+  for (int n = 0; n < end - begin && n < kAhead; ++n)
+    prefetch(cuts, d, f, reverse ? end - 1 - n : begin + n, j);
   for (int n = 0; n < end - begin; ++n) {
     const int k = reverse ? end - 1 - n : begin + n, i = cuts.column[k];
+    if (n + kAhead < end - begin) prefetch(cuts, d, f, reverse ? k - kAhead : k + kAhead, j);
     const T* w = cuts.weight + 4 * k;
     if (membrane.inverse_diagonal) {
       const CellCorners<const T> at(membrane.inverse_diagonal, i, j);

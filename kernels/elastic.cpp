@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/elastic.h>
 
+#include <atomic>
 #include <vector>
 
 #include "kernel_table.h"
@@ -28,21 +29,27 @@ void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
 }
 
 template <class T>
-void force(const Membrane<T>& m, const Unknowns<T>& f) {
+int force(const Membrane<T>& m, const Unknowns<T>& f) {
   const KernelTable<T>& kernels = table<T>();
+  std::atomic<int> inverted = 0;
   for_rows(0, f.x.rows - 1, f.x.columns, [&](int j) {
     if (j > 0) kernels.force_nodes(m, f, j);
-    if (m.pressure) kernels.force_cells(m, f, j);
+    if (!m.pressure) return;
+    kernels.force_cells(m, f, j);
+    const int count = kernels.inverted_cells(m, f, j);
+    if (count > 0) inverted.fetch_add(count, std::memory_order_relaxed);
   });
+  return inverted;
 }
 
 template <class T>
 EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   const KernelTable<T>& kernels = table<T>();
   const int rows = m.ux.rows - 1;
-  std::vector<EnergySums> of_row(static_cast<std::size_t>(rows));
-  for_rows(0, rows, m.ux.columns,
-           [&](int j) { kernels.energy(m, d, step, bool(d.x), of_row[std::size_t(j)], j); });
+  thread_local std::vector<EnergySums> of_row;  // of the calling thread, kept from call to call
+  of_row.assign(static_cast<std::size_t>(rows), {});
+  EnergySums* const at = of_row.data();
+  for_rows(0, rows, m.ux.columns, [&](int j) { kernels.energy(m, d, step, bool(d.x), at[j], j); });
   EnergySums sums;
   for (const EnergySums& row : of_row) {
     sums.elastic += row.elastic;
@@ -57,7 +64,7 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   template void apply_hessian(const Membrane<T>&, const Unknowns<const T>&, const Unknowns<T>&); \
   template void linear_residual(const Membrane<T>&, const Unknowns<const T>&,                    \
                                 const Unknowns<const T>&, const Unknowns<T>&);                   \
-  template void force(const Membrane<T>&, const Unknowns<T>&);                                   \
+  template int force(const Membrane<T>&, const Unknowns<T>&);                                    \
   template EnergySums energy(const Membrane<T>&, const Unknowns<const T>&, T);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

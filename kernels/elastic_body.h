@@ -169,4 +169,21 @@ template <class T>
   }
 }
 
+/// Cells with J* < 0 in a row of `force_cells_row`'s result g: g − A/kappa P = −A (J* − 1) > A.
+template <class T>
+[[gnu::flatten]] int inverted_cells_row(const Membrane<T>& m, const Unknowns<T>& force, int j) {
+  int count = 0;
+  const T area = m.spacing * m.spacing, constant = m.compliance.value * area;
+  for (int parity = 0; parity < 2; ++parity) {
+    const T *p = m.pressure.half(j, parity), *g = force.p.half(j, parity);
+    const T* cells = m.compliance.cells ? m.compliance.cells.half(j, parity) : nullptr;
+    const int columns = half_count(m.pressure.columns, parity);
+    if (cells)
+      for (int k = 0; k < columns; ++k) count += g[k] - area * cells[k] * p[k] > area;
+    else
+      for (int k = 0; k < columns; ++k) count += g[k] - constant * p[k] > area;
+  }
+  return count;
+}
+
 }  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

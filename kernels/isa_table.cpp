@@ -19,6 +19,7 @@ constexpr KernelTable<T> make_table() {
       .residual_cells = linear_cells_row<true, T>,
       .force_nodes = force_nodes_row<T>,
       .force_cells = force_cells_row<T>,
+      .inverted_cells = inverted_cells_row<T>,
       .energy = energy_row<T>,
       .relax_nodes = relax_nodes_row<T>,
       .start_nodes = start_nodes_row<T>,

@@ -24,6 +24,7 @@ struct KernelTable {
                          int j);
   void (*force_nodes)(const Membrane<T>&, const Fields& out, int j);
   void (*force_cells)(const Membrane<T>&, const Fields& out, int j);
+  int (*inverted_cells)(const Membrane<T>&, const Fields& force, int j);
   void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved, EnergySums&, int j);
 
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);

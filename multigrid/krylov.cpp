@@ -12,8 +12,8 @@ namespace drumhead::multigrid {
 namespace {
 
 // Cycles alone go on while each leaves less than this share of the residual.
-constexpr double kCyclesSuffice = 0.4;
-constexpr int kMostPlainCycles = 4;
+constexpr double kCyclesSuffice = 0.85;
+constexpr int kMostPlainCycles = 3;
 
 template <class T>
 class Gcr {
@@ -170,7 +170,7 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
       ++report.cycles;
       const double before = report.residual;
       report.residual = residual_norm(hierarchy, system, curve) / start;
-      if (report.residual <= options.reduction) return report;
+      if (report.residual <= options.content) return report;
       enough = !(report.residual < kCyclesSuffice * before);
     }
   }

@@ -17,7 +17,8 @@ struct Vector {
 };
 
 struct LinearOptions {
-  double reduction = 0.1;  ///< of the residual norm
+  double content = 0.1;    ///< residual, relative, at which plain cycles stop
+  double reduction = 0.1;  ///< and GCR, where it is needed
   int most_cycles = 30;
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;

@@ -63,8 +63,9 @@ class Newton {
   double curve_merit(double step) const;
   void prepare_curve_merit();
   double force_norm(bool pressure);
-  bool full_step_solves(double norm_before);
-  NewtonStep line_search(double norm_before);
+  double line_search();
+  double take_step(double norm_before);
+  int inverted_cells() const;
   void update(double step, bool pressure);
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
@@ -74,6 +75,8 @@ class Newton {
   grid::MemoryMeter& meter_;
   std::vector<double> gap_, slope_;  ///< per curve row: b − W u − M q⁺ and −W du
   double penalty_ = 0.0;             ///< nu
+  double norm_ = 0.0;                ///< of the force that was set last
+  int inverted_cells_ = 0;           ///< at the state of that force
 };
 
 }  // namespace drumhead::multigrid

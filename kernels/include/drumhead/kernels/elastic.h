@@ -28,9 +28,9 @@ void linear_residual(const Membrane<T>& membrane, const Unknowns<const T>& f,
                      const Unknowns<const T>& d, const Unknowns<T>& r);
 
 /// f = −∂E/∂(x, P) at the membrane's state, without the curve forces: the right-hand side of
-/// Newton's method.
+/// Newton's method. Returns the number of cells with J* < 0, known on the way; 0 without pressures.
 template <class T>
-void force(const Membrane<T>& membrane, const Unknowns<T>& f);
+int force(const Membrane<T>& membrane, const Unknowns<T>& f);
 
 /// Sums over all cells; lengths in finest cells, energies in mu times that squared.
 struct EnergySums {
