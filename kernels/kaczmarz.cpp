@@ -60,8 +60,7 @@ namespace {
 /// Entry of M's row k that one of its links makes.
 template <class T>
 T compliance_entry(const Cuts<T>& cuts, int k, int link) {
-  return T(0) -
-         cuts.jump * cuts.link_strength[link] / (cuts.length[k] * cuts.length[cuts.link[link]]);
+  return T(0) - cuts.jump * cuts.link_strength[link];
 }
 template <class T>
 T weight_norm2(const T* w) {

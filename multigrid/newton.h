@@ -4,8 +4,8 @@
 // P_H = clamp(P − median P, ±theta mu). With theta = 1 the elastic block is positive definite;
 // theta grows eightfold where full steps are limited by the clamp rather than by the linear solver,
 // and shrinks with every shortened step. Plain Newton diverges on two thirds of the hard scenes. A
-// full step that brings all equations closer to zero is taken as it is; otherwise the step length is
-// halved on a merit function in which the multipliers are those of the full step.
+// full step that brings all equations closer to zero is taken as it is; otherwise the step length
+// is halved on a merit function in which the multipliers are those of the full step.
 #include <drumhead/multigrid/warp.h>
 
 #include "krylov.h"
