@@ -57,9 +57,9 @@ std::size_t CurveNodes<T>::bytes() const {
 
 namespace {
 
-/// Entry of M's row k that one of its links makes.
+/// Entry of M that a link makes.
 template <class T>
-T compliance_entry(const Cuts<T>& cuts, int k, int link) {
+T compliance_entry(const Cuts<T>& cuts, int link) {
   return T(0) - cuts.jump * cuts.link_strength[link];
 }
 template <class T>
@@ -74,7 +74,7 @@ T curve_row_norm2(const KaczmarzSystem<T>& system, int k) {
   const T diagonal = cut_compliance_diagonal(cuts, k);
   T sum = weight_norm2(cuts.weight + 4 * k) + system.beta2[k] * (diagonal * diagonal);
   for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l) {
-    const T entry = compliance_entry(cuts, k, l);
+    const T entry = compliance_entry(cuts, l);
     sum += system.beta2[cuts.link[l]] * (entry * entry);
   }
   return sum;
@@ -123,7 +123,7 @@ void relax_curve_row(const KaczmarzSystem<T>& system, int k, int j) {
   };
   change(k, cut_compliance_diagonal(cuts, k));
   for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l)
-    change(cuts.link[l], compliance_entry(cuts, k, l));
+    change(cuts.link[l], compliance_entry(cuts, l));
 }
 
 }  // namespace

@@ -47,9 +47,13 @@ template <class T>
       lane.store(lane.load(fy + k) * by, dy + k);
     });
   };
-  if (m.inverse_diagonal) {
-    const T* inverse = m.inverse_diagonal.half(j, parity);
-    scale([=](auto lane, auto, int k) { return lane.load(inverse + k); });
+  if (m.mu.cells) {
+    const NodeStencil<T, false, true> stencil(m, d, j, parity);
+    scale([&](auto lane, auto zero, int k) {
+      auto w = zero, e = zero, s = zero, n = zero;
+      stencil.edges(lane, zero, k, w, e, s, n);
+      return decltype(zero)(T(1)) / ((w + e) + (s + n));
+    });
   } else {
     const T inverse = T(1) / (T(4) * m.mu.value);
     scale([=](auto, auto zero, int) { return decltype(zero)(inverse); });
