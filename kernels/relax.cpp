@@ -126,7 +126,8 @@ StageList list_stages(bool clear, bool prolong, bool volume, bool cuts, bool res
   StageList list;
   if (clear) list.add({Sweep::clear});
   if (prolong) list.add({Sweep::prolong});
-  for (int colour : {0, 1}) list.add({clear && colour == 0 ? Sweep::start : Sweep::nodes, colour});
+  for (int colour : {0, 1})
+    list.add({clear && !prolong && colour == 0 ? Sweep::start : Sweep::nodes, colour});
   for (bool reverse : {false, true}) {
     const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
     auto add = [&](Sweep sweep) {
