@@ -18,8 +18,10 @@ constexpr Colour kTarget{0, 0.85, 1, 1}, kSource{0.95, 0.1, 0.1, 1}, kPin{1, 1, 
 void draw_lattice(const multigrid::Solution& solution, Canvas& canvas) {
   const grid::Lattice& lattice = solution.lattice;
   const kernels::LatticeMapView map = map_of(solution);
-  const auto warped = [&](int i, int j) {
-    const grid::Point rest = lattice.rest_px(i, j);
+  // Straight from node to node, but for lines that curves may bend between nodes.
+  const int pieces = solution.split.column.empty() ? 1 : 4;
+  const auto point = [&](double x, double y) {
+    const grid::Point rest = lattice.origin_px + lattice.cell_px * grid::Point{x, y};
     const kernels::Position p = kernels::forward_position(map, {rest.x, rest.y});
     return grid::Point{p.x, p.y};
   };
@@ -29,11 +31,13 @@ void draw_lattice(const multigrid::Solution& solution, Canvas& canvas) {
   const auto drawn = [&](int k, int last) { return k % stride == 0 || k == last; };
   for (int j = 0; j <= lattice.ny; ++j) {
     if (!drawn(j, lattice.ny)) continue;
-    for (int i = 0; i <= lattice.nx; ++i) canvas.line_to(warped(i, j), i == 0);
+    for (int k = 0; k <= lattice.nx * pieces; ++k)
+      canvas.line_to(point(double(k) / pieces, j), k == 0);
   }
   for (int i = 0; i <= lattice.nx; ++i) {
     if (!drawn(i, lattice.nx)) continue;
-    for (int j = 0; j <= lattice.ny; ++j) canvas.line_to(warped(i, j), j == 0);
+    for (int k = 0; k <= lattice.ny * pieces; ++k)
+      canvas.line_to(point(i, double(k) / pieces), k == 0);
   }
   canvas.stroke(kShade, 2.4, true);
   canvas.stroke(kLattice, 1.0);

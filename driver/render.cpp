@@ -48,16 +48,6 @@ Frame frame_of(const Image& picture, const grid::Lattice& lattice, bool expand) 
   return padded_frame(lattice);
 }
 
-kernels::LatticeMapView map_of(const multigrid::Solution& solution) {
-  const grid::Lattice& lattice = solution.lattice;
-  return {.u = solution.u_px.data(),
-          .v = solution.v_px.data(),
-          .nx = lattice.nx,
-          .ny = lattice.ny,
-          .cell_px = lattice.cell_px,
-          .origin_px = {lattice.origin_px.x, lattice.origin_px.y}};
-}
-
 Renderer::Renderer(const Image& picture, const multigrid::Solution& solution, const Frame& frame,
                    kernels::Border border, int threads)
     : frame_(frame),

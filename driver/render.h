@@ -14,9 +14,6 @@ namespace drumhead::driver {
 /// std::invalid_argument where a side would have more than 65535 pixels.
 Frame frame_of(const Image& picture, const grid::Lattice& lattice, bool expand);
 
-/// A window on the solution, which must outlive it.
-kernels::LatticeMapView map_of(const multigrid::Solution& solution);
-
 /// The warped picture, in bands of rows. The filter overshoots at edges; each channel is clamped to
 /// the range that it had.
 class Renderer {

@@ -2,6 +2,7 @@
 #include <drumhead/kernels/resample.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -46,22 +47,44 @@ void for_each_tile(const LatticeMapView& map, const BoxTree& tree, const ImageTa
   });
 }
 
+// What becomes of the unit vectors in a triangle: ∂(warped)/∂(rest).
+std::array<Position, 2> unit_edges(const MapTriangle& triangle) {
+  const auto between = [](Position a, Position b) { return Position{b.x - a.x, b.y - a.y}; };
+  const Position p = between(triangle.rest[0], triangle.rest[1]);
+  const Position q = between(triangle.rest[0], triangle.rest[2]);
+  const Position e = between(warped_corner(triangle, 0), warped_corner(triangle, 1));
+  const Position f = between(warped_corner(triangle, 0), warped_corner(triangle, 2));
+  const double area = p.x * q.y - p.y * q.x;
+  return {Position{(e.x * q.y - f.x * p.y) / area, (e.y * q.y - f.y * p.y) / area},
+          Position{(f.x * p.x - e.x * q.x) / area, (f.y * p.x - e.y * q.x) / area}};
+}
+
 // The displacement's derivatives by rest at the corners of a cell bound the footprints in it.
 bool needs_pyramid(const LatticeMapView& map, const FilterBounds& bounds) {
   const auto warped_edge = [&](int i, int j, int k, int l) {
     const Position a = warped_node(map, i, j), b = warped_node(map, k, l);
     return Position{(b.x - a.x) / map.cell_px, (b.y - a.y) / map.cell_px};
   };
+  const auto too_small = [&](Position e, Position f) {  // edges warped from the unit square's
+    const double J = e.x * f.y - e.y * f.x;
+    if (!(J > 1e-8)) return true;
+    const float inverse[4] = {float(f.y / J), float(-f.x / J), float(-e.y / J), float(e.x / J)};
+    return footprint(inverse, bounds.anisotropy).least > kBlendFrom * bounds.detail;
+  };
   for (int j = 0; j < map.ny; ++j) {
     for (int i = 0; i < map.nx; ++i) {
+      if (const int c = map.split.find(i, j); c >= 0) {
+        for (int n = map.split.triangle_begin[c]; n < map.split.triangle_begin[c + 1]; ++n) {
+          const auto [e, f] = unit_edges(map.split.triangle[n]);
+          if (too_small(e, f)) return true;
+        }
+        continue;
+      }
       for (int corner = 0; corner < 4; ++corner) {
         const int s = corner % 2, t = corner / 2;
         const Position e = warped_edge(i, j + t, i + 1, j + t);
         const Position f = warped_edge(i + s, j, i + s, j + 1);
-        const double J = e.x * f.y - e.y * f.x;
-        if (!(J > 1e-8)) return true;
-        const float inverse[4] = {float(f.y / J), float(-f.x / J), float(-e.y / J), float(e.x / J)};
-        if (footprint(inverse, bounds.anisotropy).least > kBlendFrom * bounds.detail) return true;
+        if (too_small(e, f)) return true;
       }
     }
   }
@@ -124,11 +147,53 @@ void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int t
   });
 }
 
+namespace {
+
+// The displacement at a rest position by the triangle near cell (i, j) that holds it, the one that
+// misses it least if none does; how far inside it is, as the least barycentric coordinate.
+struct InTriangle {
+  double inside = -std::numeric_limits<double>::infinity();
+  Position displacement;
+};
+InTriangle nearest_triangle(const LatticeMapView& map, int i, int j, Position rest) {
+  InTriangle best;
+  const SplitCellsView& split = map.split;
+  for (int row = std::max(0, j - 1); row <= std::min(map.ny - 1, j + 1); ++row) {
+    const int *begin = split.column + split.row_begin[row],
+              *end = split.column + split.row_begin[row + 1];
+    for (const int* at = std::lower_bound(begin, end, i - 1); at != end && *at <= i + 1; ++at) {
+      const int c = int(at - split.column);
+      for (int n = split.triangle_begin[c]; n < split.triangle_begin[c + 1]; ++n) {
+        const MapTriangle& triangle = split.triangle[n];
+        const Position *r = triangle.rest, *d = triangle.displacement;
+        const Position p{r[1].x - r[0].x, r[1].y - r[0].y}, q{r[2].x - r[0].x, r[2].y - r[0].y};
+        const Position h{rest.x - r[0].x, rest.y - r[0].y};
+        const double area = p.x * q.y - p.y * q.x;
+        const double s = (h.x * q.y - h.y * q.x) / area, t = (p.x * h.y - p.y * h.x) / area;
+        const double inside = std::min(std::min(s, t), 1.0 - s - t);
+        if (!(inside > best.inside)) continue;
+        best.inside = inside;
+        best.displacement = {d[0].x + s * (d[1].x - d[0].x) + t * (d[2].x - d[0].x),
+                             d[0].y + s * (d[1].y - d[0].y) + t * (d[2].y - d[0].y)};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 Position forward_position(const LatticeMapView& map, Position rest_px) {
   const double s = (rest_px.x - map.origin_px.x) / map.cell_px;
   const double t = (rest_px.y - map.origin_px.y) / map.cell_px;
   if (!(s >= 0.0 && s <= map.nx && t >= 0.0 && t <= map.ny)) return rest_px;
   const int i = std::min(int(s), map.nx - 1), j = std::min(int(t), map.ny - 1);
+  if (map.split.row_begin) {
+    const InTriangle best = nearest_triangle(map, i, j, rest_px);
+    // Where cell (i, j) is bilinear the point may still lie in a triangle of the next one.
+    if (best.inside >= -1e-9 || map.split.find(i, j) >= 0)
+      return {rest_px.x + best.displacement.x, rest_px.y + best.displacement.y};
+  }
   const double fs = s - i, ft = t - j;
   const std::size_t n0 = std::size_t(j) * std::size_t(map.nx + 1) + std::size_t(i);
   const std::size_t n1 = n0 + std::size_t(map.nx + 1);

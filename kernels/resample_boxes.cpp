@@ -23,6 +23,13 @@ void Box::add(const Box& box) {
   y1 = std::max(y1, box.y1);
 }
 
+int SplitCellsView::find(int i, int j) const {
+  if (!row_begin) return -1;
+  const int *begin = column + row_begin[j], *end = column + row_begin[j + 1];
+  const int* const at = std::lower_bound(begin, end, i);
+  return at != end && *at == i ? int(at - column) : -1;
+}
+
 BoxTree::BoxTree(const LatticeMapView& map) {
   Level leaves{(map.nx + kBlock - 1) / kBlock, (map.ny + kBlock - 1) / kBlock, {}};
   leaves.boxes.resize(std::size_t(leaves.columns) * std::size_t(leaves.rows));
@@ -31,6 +38,16 @@ BoxTree::BoxTree(const LatticeMapView& map) {
     for (int i0 = 0; i0 < map.nx; i0 += kBlock, ++box) {
       for (int j = j0; j <= std::min(j0 + kBlock, map.ny); ++j) {
         for (int i = i0; i <= std::min(i0 + kBlock, map.nx); ++i) box->add(warped_node(map, i, j));
+      }
+    }
+  }
+  const SplitCellsView& split = map.split;
+  for (int j = 0; split.row_begin && j < map.ny; ++j) {
+    for (int c = split.row_begin[j]; c < split.row_begin[j + 1]; ++c) {
+      Box& block = leaves.boxes[std::size_t(j / kBlock) * std::size_t(leaves.columns) +
+                                std::size_t(split.column[c] / kBlock)];
+      for (int n = split.triangle_begin[c]; n < split.triangle_begin[c + 1]; ++n) {
+        for (int k = 0; k < 3; ++k) block.add(warped_corner(split.triangle[n], k));
       }
     }
   }

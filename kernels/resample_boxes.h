@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Which deformed cells can lie under a rectangle of output pixels: a quadtree of bounding boxes
-// over blocks of 4 × 4 cells. A bilinear patch lies in the convex hull of its corners, so corner
-// boxes suffice.
+// over blocks of 4 × 4 cells. Bilinear patches and triangles lie in the convex hulls of their
+// corners, so corner boxes suffice.
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -29,6 +29,12 @@ inline Position warped_node(const LatticeMapView& map, int i, int j) {
   const std::size_t node = std::size_t(j) * std::size_t(map.nx + 1) + std::size_t(i);
   return {map.origin_px.x + map.cell_px * i + map.u[node],
           map.origin_px.y + map.cell_px * j + map.v[node]};
+}
+
+/// Warped position of a corner of a triangle.
+inline Position warped_corner(const MapTriangle& triangle, int k) {
+  return {triangle.rest[k].x + triangle.displacement[k].x,
+          triangle.rest[k].y + triangle.displacement[k].y};
 }
 
 class BoxTree {

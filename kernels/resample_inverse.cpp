@@ -111,34 +111,83 @@ void accept(const Cell& cell, double s, double t, Position x, TileMap& tile, int
   jacobian[3] = float(scale * e.x / det);
 }
 
-void rasterise(const Cell& cell, double sign, const Box& lattice, TileMap& tile) {
-  // Pixel a has its centre in [x0, x1] for a in [⌈x0 − ½⌉, ⌊x1 − ½⌋], with room for near misses.
-  const double room = 0.5 + kNear * cell.cell_px;
+// Pixels of the tile whose centres a box may hold: a has its centre in [x0, x1] for a in
+// [⌈x0 − ½⌉, ⌊x1 − ½⌋], with room for near misses.
+struct Window {
+  int a0, a1, b0, b1;
+};
+Window window_of(const Box& box, double cell_px, const TileMap& tile) {
+  const double room = 0.5 + kNear * cell_px;
   const auto first = [&](double x, int from, int n) {
     return int(std::clamp(std::ceil(x - room) - from, 0.0, double(n)));
   };
   const auto end = [&](double x, int from, int n) {
     return int(std::clamp(std::floor(x - 1.0 + room) - from + 1.0, 0.0, double(n)));
   };
-  const int a0 = first(cell.box.x0, tile.left, tile.width);
-  const int a1 = end(cell.box.x1, tile.left, tile.width);
-  const int b0 = first(cell.box.y0, tile.top, tile.height);
-  const int b1 = end(cell.box.y1, tile.top, tile.height);
+  return {first(box.x0, tile.left, tile.width), end(box.x1, tile.left, tile.width),
+          first(box.y0, tile.top, tile.height), end(box.y1, tile.top, tile.height)};
+}
+
+// Whether a point under a pixel is the best so far; if it is, its rank is noted.
+bool take(double miss, signed char side, std::int32_t index, Position x, const Box& lattice,
+          TileMap& tile, int pixel) {
+  if (!(miss <= kNear)) return false;
+  const float rank = miss <= kInside ? 0.0f : float(miss);
+  if (!better(rank, side, index, tile, pixel)) return false;
+  if (rank > 0.0f && !lattice.holds(x)) return false;
+  tile.miss[pixel] = rank;
+  tile.side[pixel] = side;
+  tile.cell[pixel] = index;
+  return true;
+}
+
+void rasterise(const Cell& cell, double sign, const Box& lattice, TileMap& tile) {
+  const Window w = window_of(cell.box, cell.cell_px, tile);
   double s[TileMap::kSide], t[TileMap::kSide], miss[TileMap::kSide];
-  for (int b = b0; b < b1; ++b) {
-    invert_row(cell, sign, tile.left + a0, tile.top + b, a1 - a0, s, t, miss);
-    for (int a = a0; a < a1; ++a) {
-      const int k = a - a0, pixel = b * TileMap::kSide + a;
-      if (!(miss[k] <= kNear)) continue;
-      const float rank = miss[k] <= kInside ? 0.0f : float(miss[k]);
-      const signed char side = sign > 0.0 ? 1 : -1;
-      if (!better(rank, side, cell.index, tile, pixel)) continue;
+  for (int b = w.b0; b < w.b1; ++b) {
+    invert_row(cell, sign, tile.left + w.a0, tile.top + b, w.a1 - w.a0, s, t, miss);
+    for (int a = w.a0; a < w.a1; ++a) {
+      const int k = a - w.a0, pixel = b * TileMap::kSide + a;
       const Position x{tile.left + a + 0.5, tile.top + b + 0.5};
-      if (rank > 0.0f && !lattice.holds(x)) continue;
-      tile.miss[pixel] = rank;
-      tile.side[pixel] = side;
-      tile.cell[pixel] = cell.index;
-      accept(cell, s[k], t[k], x, tile, pixel);
+      const signed char side = sign > 0.0 ? 1 : -1;
+      if (take(miss[k], side, cell.index, x, lattice, tile, pixel))
+        accept(cell, s[k], t[k], x, tile, pixel);
+    }
+  }
+}
+
+Position difference(Position a, Position b) { return {a.x - b.x, a.y - b.y}; }
+
+// A triangle of a cell: x = x0 + s e + t f, displacement d0 + s de + t df, s, t ≥ 0, s + t ≤ 1.
+void rasterise(const MapTriangle& triangle, const LatticeMapView& map, std::int32_t index,
+               const Box& lattice, TileMap& tile) {
+  const Position x0 = warped_corner(triangle, 0), d0 = triangle.displacement[0];
+  const Position e = difference(warped_corner(triangle, 1), x0);
+  const Position f = difference(warped_corner(triangle, 2), x0);
+  const Position de = difference(triangle.displacement[1], d0);
+  const Position df = difference(triangle.displacement[2], d0);
+  const Position re = difference(triangle.rest[1], triangle.rest[0]);
+  const Position rf = difference(triangle.rest[2], triangle.rest[0]);
+  const double area = cross(e, f), floor = 1e-8 * cross(re, rf);
+  if (!std::isfinite(area + x0.x + x0.y) || area == 0.0) return;
+  const double det = std::abs(area) < floor ? std::copysign(floor, area) : area;
+  const float jacobian[4] = {
+      float((re.x * f.y - rf.x * e.y) / det), float((rf.x * e.x - re.x * f.x) / det),
+      float((re.y * f.y - rf.y * e.y) / det), float((rf.y * e.x - re.y * f.x) / det)};
+  Box box;
+  for (int k = 0; k < 3; ++k) box.add(warped_corner(triangle, k));
+  const Window w = window_of(box, map.cell_px, tile);
+  for (int b = w.b0; b < w.b1; ++b) {
+    for (int a = w.a0; a < w.a1; ++a) {
+      const Position x{tile.left + a + 0.5, tile.top + b + 0.5}, h = difference(x, x0);
+      double s = cross(h, f) / area, t = cross(e, h) / area;
+      const int pixel = b * TileMap::kSide + a;
+      const double miss = std::max(std::max(-s, -t), s + t - 1.0);
+      if (!take(miss, area > 0.0 ? 1 : -1, index, x, lattice, tile, pixel)) continue;
+      s = std::clamp(s, 0.0, 1.0);
+      t = std::clamp(t, 0.0, 1.0 - s);
+      tile.source[pixel] = {x.x - (d0.x + s * de.x + t * df.x), x.y - (d0.y + s * de.y + t * df.y)};
+      std::copy_n(jacobian, 4, tile.jacobian[pixel]);
     }
   }
 }
@@ -165,6 +214,11 @@ void invert_tile(const LatticeMapView& map, const BoxTree& tree, TileMap& tile) 
   tree.visit(pixels, [&](int i0, int j0) {
     for (int j = j0; j < std::min(j0 + BoxTree::kBlock, map.ny); ++j) {
       for (int i = i0; i < std::min(i0 + BoxTree::kBlock, map.nx); ++i) {
+        if (const int c = map.split.find(i, j); c >= 0) {
+          for (int n = map.split.triangle_begin[c]; n < map.split.triangle_begin[c + 1]; ++n)
+            rasterise(map.split.triangle[n], map, std::int32_t(j) * map.nx + i, lattice, tile);
+          continue;
+        }
         const Cell cell = make_cell(map, i, j);
         if (!is_finite(cell) || !cell.box.meets(pixels)) continue;
         rasterise(cell, 1.0, lattice, tile);

@@ -10,7 +10,8 @@
 // whose discriminant D = q_t² − 4 A_t C_t = q_s² − 4 A_s C_s is the same, and J at a root is ±√D,
 // the same sign for s and t. So the point with J > 0 is t = (q_t − √D)/2A_t = 2C_t/(q_t + √D), the
 // one with J < 0 has −√D; of the two quotients the one that does not cancel is taken, which covers
-// parallelograms (A = 0), trapezia and cells turned inside out alike.
+// parallelograms (A = 0), trapezia and cells turned inside out alike. A triangle is a linear
+// system.
 #include <cstdint>
 
 #include "resample_boxes.h"

@@ -2,31 +2,35 @@
 #include "analysis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace drumhead::multigrid {
 namespace {
 
 constexpr std::size_t kMostPlaces = 20;
 
-/// Displacement in px at a rest point, bilinear in its cell.
-grid::Point displacement(const Solution& s, grid::Point px) {
-  const grid::Point at = s.lattice.to_cells(px);
-  const int i = std::clamp(int(std::floor(at.x)), 0, s.lattice.nx - 1);
-  const int j = std::clamp(int(std::floor(at.y)), 0, s.lattice.ny - 1);
-  const double x = at.x - i, y = at.y - j;
-  const std::size_t row = std::size_t(s.lattice.nx) + 1, k = std::size_t(j) * row + std::size_t(i);
-  auto bilinear = [&](const std::vector<double>& f) {
-    return (1 - y) * ((1 - x) * f[k] + x * f[k + 1]) +
-           y * ((1 - x) * f[k + row] + x * f[k + row + 1]);
-  };
-  return {bilinear(s.u_px), bilinear(s.v_px)};
+double cross(kernels::Position a, kernels::Position b) { return a.x * b.y - a.y * b.x; }
+
+/// Twice the areas of a triangle at rest and deformed.
+std::array<double, 2> areas(const kernels::MapTriangle& triangle) {
+  std::array<kernels::Position, 2> rest, moved;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const kernels::Position r{triangle.rest[k + 1].x - triangle.rest[0].x,
+                              triangle.rest[k + 1].y - triangle.rest[0].y};
+    rest[k] = r;
+    moved[k] = {r.x + triangle.displacement[k + 1].x - triangle.displacement[0].x,
+                r.y + triangle.displacement[k + 1].y - triangle.displacement[0].y};
+  }
+  return {cross(rest[0], rest[1]), cross(moved[0], moved[1])};
 }
 
 }  // namespace
 
 std::vector<CurveReport> curve_gaps(const Solution& solution,
                                     const std::vector<grid::CurvePair>& curves) {
+  const kernels::LatticeMapView map = map_of(solution);
   std::vector<CurveReport> reports;
   for (const grid::CurvePair& curve : curves) {
     CurveReport report{.name = curve.name};
@@ -37,8 +41,8 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
       for (int n = 0; n < points; ++n) {
         const double t = (n + 0.5) / points;
         const grid::Point source = pair.source.at(t);
-        const double gap =
-            grid::length(source + displacement(solution, source) - pair.target.at(t));
+        const kernels::Position to = kernels::forward_position(map, {source.x, source.y});
+        const double gap = grid::length(grid::Point{to.x, to.y} - pair.target.at(t));
         const double ds = grid::length(pair.source.derivative(t)) / points;
         squares += gap * gap * ds;
         report.length_px += ds;
@@ -55,6 +59,17 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
 }
 
 CellJ cell_J(const Solution& s, int i, int j) {
+  const kernels::SplitCellsView split = s.split.view();
+  if (const int c = split.find(i, j); c >= 0) {
+    double rest = 0.0, moved = 0.0, least = std::numeric_limits<double>::infinity();
+    for (int t = split.triangle_begin[c]; t < split.triangle_begin[c + 1]; ++t) {
+      const auto [before, after] = areas(split.triangle[t]);
+      rest += before;
+      moved += after;
+      least = std::min(least, after / before);
+    }
+    return {moved / rest, least};
+  }
   const double h = s.lattice.cell_px;
   const std::size_t row = std::size_t(s.lattice.nx) + 1, k = std::size_t(j) * row + std::size_t(i);
   auto node = [&](std::size_t n, double x, double y) {

@@ -24,3 +24,7 @@ foreach(name coarsen conforming curve cut_cells field lattice mask material)
   drumhead_test(NAME grid_${name}_test SOURCES grid_${name}_test.cpp
     LINK drumhead::grid LABEL unit)
 endforeach()
+
+drumhead_test(NAME multigrid_split_test SOURCES multigrid_split_test.cpp
+  LINK drumhead::multigrid LABEL unit)
+target_include_directories(multigrid_split_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)

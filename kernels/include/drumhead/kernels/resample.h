@@ -6,8 +6,9 @@
 // Geometry. Node (i, j) of the lattice rests at origin + cell_px (i, j) and lies at rest + (u, v)
 // after the warp; inside a cell both are bilinear. An output pixel takes its colour from the rest
 // position of the point that came to lie under its centre: the cell's bilinear map is inverted
-// exactly (a quadratic, both roots; no iteration). Coordinates are continuous picture pixels: pixel
-// (a, b) is centred at (a+½, b+½).
+// exactly (a quadratic, both roots; no iteration). Cells that curves cut are given as triangles
+// instead, each affine, so that the kink along a curve is rendered where it is. Coordinates are
+// continuous picture pixels: pixel (a, b) is centred at (a+½, b+½).
 //
 // Folds. Where several points lie under a pixel, one whose J = det ∂(warped)/∂(rest) is positive
 // wins over the others; among equals the cell of the later row, and in a row the later column. The
@@ -56,14 +57,36 @@ struct ImageTarget {
   int left = 0, top = 0;
 };
 
-/// The deformed lattice: displacement of node (i, j) is u, v[j·(nx+1) + i] in picture pixels. A
-/// cell with a corner that is not finite covers nothing.
+/// A triangle of a cell that is not bilinear: the warp is affine in it.
+struct MapTriangle {
+  Position rest[3];          ///< picture pixels, in the sense x → y: area > 0
+  Position displacement[3];  ///< of these points
+};
+
+/// The cells that are made of triangles instead, sorted by row, then column: cells of row j are
+/// [row_begin[j], row_begin[j+1]). Their triangles may reach beyond the cell's square and leave
+/// parts of it to those of the next cells by less than a cell; together with the other cells they
+/// cover the lattice once.
+struct SplitCellsView {
+  const int* row_begin = nullptr;  ///< ny + 1; null: there are none
+  const int* column = nullptr;
+  const int* triangle_begin = nullptr;  ///< one more than cells
+  const MapTriangle* triangle = nullptr;
+
+  /// Index of cell (i, j), −1 if it is bilinear.
+  int find(int i, int j) const;
+};
+
+/// The deformed lattice: displacement of the point that rests at node (i, j) is
+/// u, v[j·(nx+1) + i] in picture pixels. A cell or triangle with a corner that is not finite covers
+/// nothing.
 struct LatticeMapView {
   const double* u = nullptr;
   const double* v = nullptr;
   int nx = 0, ny = 0;    ///< cells, ≥ 1; nx·ny < 2³¹
   double cell_px = 1.0;  ///< > 0
   Position origin_px;    ///< rest position of node (0, 0)
+  SplitCellsView split;
 };
 
 /// The backward map to write, at pixels (left … left+width−1, top … top+height−1) of the output. An
@@ -136,8 +159,8 @@ class Resampler {
 /// (without the pyramid) and `render` do.
 void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int threads = 0);
 
-/// Where the warp takes a rest position (the forward map): rest + bilinear displacement inside the
-/// lattice, rest itself outside.
+/// Where the warp takes a rest position (the forward map): rest + displacement, bilinear in a cell
+/// and affine in a triangle, inside the lattice, rest itself outside.
 Position forward_position(const LatticeMapView& map, Position rest_px);
 
 /// forward_position at every pixel's centre.

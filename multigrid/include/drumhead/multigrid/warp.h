@@ -11,6 +11,7 @@
 #include <drumhead/grid/curve.h>
 #include <drumhead/grid/lattice.h>
 #include <drumhead/grid/material.h>
+#include <drumhead/multigrid/split_cells.h>
 
 namespace drumhead::multigrid {
 
@@ -97,16 +98,21 @@ struct SolveReport {
   std::vector<std::string> notes;  ///< what the solver changed or could not do, in words
 };
 
-/// The deformed lattice: displacement of node (i, j) at index j·(nx+1)+i, pressure of cell (i, j)
-/// at j·nx+i.
+/// The deformed lattice: displacement of the point that rests at node (i, j) at index j·(nx+1)+i,
+/// pressure of cell (i, j) at j·nx+i (of a split cell, the mean).
 struct Solution {
   grid::Lattice lattice;
   std::vector<double> u_px, v_px;
   std::vector<double> pressure;  ///< P in units of mu; empty where no pressures exist
+  SplitCells split;              ///< where the lattice conforms to the curves; else empty
   SolveReport report;
 };
 
-/// J of a cell: at its centre (J*, which is its mean) and the least of its four corners.
+/// The solution as the resampler reads it: a window, which must not outlive it.
+kernels::LatticeMapView map_of(const Solution& solution);
+
+/// J of a cell: at its centre (J*, which is its mean) and the least of its four corners; of a split
+/// cell, the mean and the least over its triangles.
 struct CellJ {
   double centre = 1.0, least_corner = 1.0;
 };
