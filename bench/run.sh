@@ -3,21 +3,23 @@
 #   sh bench/run.sh            kernels, then whole solves up to 800²
 #   sh bench/run.sh --large    also solves at 1600² and 3200²
 #   sh bench/run.sh --petsc    installs Debian's PETSc first, as one more competitor
+#   sh bench/run.sh --samplers installs OpenCV and libvips first, to sample by our maps
 set -eu
 cd "$(dirname "$0")/.."
 
 large=
+install() {
+  as_root=
+  [ "$(id -u)" = 0 ] || as_root=sudo
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@" >&2
+}
 for argument in "$@"; do
   case $argument in
     --large) large=--large ;;
-    --petsc)
-      as_root=
-      [ "$(id -u)" = 0 ] || as_root=sudo
-      $as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -q --no-install-recommends libpetsc-real-dev >&2
-      ;;
+    --petsc) install libpetsc-real-dev ;;
+    --samplers) install libopencv-imgproc-dev libvips-dev ;;
     *)
-      echo "usage: bench/run.sh [--large] [--petsc]" >&2
+      echo "usage: bench/run.sh [--large] [--petsc] [--samplers]" >&2
       exit 2
       ;;
   esac
@@ -27,7 +29,7 @@ sh tests/install.sh >&2
 folder=build/bench
 cmake --preset release -B $folder -DDRUMHEAD_BUILD_BENCH=ON -DDRUMHEAD_BUILD_TESTS=OFF \
   -DDRUMHEAD_BUILD_DRIVER=OFF >&2
-cmake --build $folder --target kernels_bench solve_bench >&2
+cmake --build $folder --target kernels_bench resample_bench solve_bench >&2
 
 # libgomp's threads otherwise spin between loops, on whatever else the machine does.
 export OMP_WAIT_POLICY=passive
@@ -39,5 +41,7 @@ echo "$(field 'Model name'), family $(field 'CPU family') model $(field Model), 
   "$(c++ --version | head -n 1); commit $(git rev-parse --short HEAD 2>/dev/null || echo none)"
 echo
 $folder/bench/kernels_bench
+echo
+$folder/bench/resample_bench
 echo
 $folder/bench/solve_bench $large
