@@ -98,12 +98,9 @@ const Consumer kConsumers[] = {
      [] { return answers("convert", "-version", "ImageMagick"); }, displace},
 };
 
-class DriverConsumers : public testing::TestWithParam<Consumer> {
+class DriverSampled : public testing::Test {
  protected:
   void SetUp() override {
-    if (!GetParam().present()) {
-      GTEST_SKIP() << GetParam().name << " is not installed (sh tests/install.sh tests)";
-    }
     Image photo{OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::UINT16), {}};
     for (int b = 0; b < kHeight; ++b) {
       for (int a = 0; a < kWidth; ++a) {
@@ -116,21 +113,37 @@ class DriverConsumers : public testing::TestWithParam<Consumer> {
     write_image(std::move(photo), scratch / "photo.png");
   }
 
-  void warp(const std::string& elements) {
+  /// photo.png through curves into ours.png and map.exr.
+  void warp(const std::string& elements, const std::vector<std::string>& flags) {
     scratch.write("curves.svg", drawing(kWidth, kHeight, elements));
-    const RunResult result =
-        run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "60", "-o", "ours.png",
-                               "--backward-map", "map.exr", "--forward-map", "forward.exr",
-                               "--map-convention", GetParam().convention});
+    std::vector<std::string> words = {"warp", "photo.png",      "curves.svg", "--cells",
+                                      "60",   "--backward-map", "map.exr"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const RunResult result = run_drumhead(scratch, words);
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
 
-  /// A square moves by 18 pixels and turns by 20°; the rest of the picture follows.
-  void warp_really() {
-    warp(
-        "<g id='source'><path id='a' d='M95 60 h40 v40 h-40 z'/></g>"
-        "<g id='target' transform='rotate(20 115 80) translate(16 9)'>"
-        "<path id='a-target' d='M95 60 h40 v40 h-40 z'/></g>");
+  Scratch scratch;
+};
+
+/// A square moves by 18 pixels and turns by 20°; the rest of the picture follows.
+constexpr const char* kTurnedSquare =
+    "<g id='source'><path id='a' d='M95 60 h40 v40 h-40 z'/></g>"
+    "<g id='target' transform='rotate(20 115 80) translate(16 9)'>"
+    "<path id='a-target' d='M95 60 h40 v40 h-40 z'/></g>";
+
+class DriverConsumers : public DriverSampled, public testing::WithParamInterface<Consumer> {
+ protected:
+  void SetUp() override {
+    if (!GetParam().present()) {
+      GTEST_SKIP() << GetParam().name << " is not installed (sh tests/install.sh tests)";
+    }
+    DriverSampled::SetUp();
+  }
+
+  void warp_by(const std::string& elements) {
+    warp(elements, {"-o", "ours.png", "--forward-map", "forward.exr", "--map-convention",
+                    GetParam().convention});
   }
 
   /// RMS difference between our picture and the consumer's by `map`, without the picture's edge:
@@ -165,22 +178,20 @@ class DriverConsumers : public testing::TestWithParam<Consumer> {
                     });
     return "changed.exr";
   }
-
-  Scratch scratch;
 };
 
 TEST_P(DriverConsumers, TheIdentityReturnsThePicture) {
-  warp("<g id='pin'><circle cx='100' cy='80' r='30'/></g>");
+  warp_by("<g id='pin'><circle cx='100' cy='80' r='30'/></g>");
   EXPECT_LT(difference("map.exr"), 1e-4);
 }
 
 TEST_P(DriverConsumers, AWarpReturnsOurPicture) {
-  warp_really();
+  warp_by(kTurnedSquare);
   EXPECT_LT(difference("map.exr"), kAgrees);
 }
 
 TEST_P(DriverConsumers, AWrongMapDoesNot) {
-  warp_really();
+  warp_by(kTurnedSquare);
   const std::string convention = GetParam().convention;
   const float half_x = convention == "st" ? 0.5f / kWidth : 0.5f;
   const float half_y = convention == "st" ? 0.5f / kHeight : 0.5f;
@@ -195,6 +206,35 @@ TEST_P(DriverConsumers, AWrongMapDoesNot) {
   EXPECT_GT(difference("forward.exr"), kDiffers);
   // What was changed is what differed.
   EXPECT_LT(difference(changed([](float&, float&) {})), kAgrees);
+}
+
+// The data window is the whole padded domain, as compositors keep it for what moves in from
+// outside.
+TEST_F(DriverSampled, StWarpByAnExpandedMapReturnsTheExpandedPicture) {
+  if (!answers("oiiotool", "--help", "--st_warp")) {
+    GTEST_SKIP() << "oiiotool is not installed (sh tests/install.sh tests)";
+  }
+  warp(kTurnedSquare, {"--expand", "-o", "ours.exr"});
+  ASSERT_EQ(run_program(scratch,
+                        {"oiiotool", "photo.png", "map.exr", "--st_warp:flip_t=1", "-o", "r.exr"})
+                .exit_code,
+            0);
+  const Image ours = read_image(scratch / "ours.exr"), theirs = read_image(scratch / "r.exr");
+  ASSERT_EQ((std::array{ours.spec.x, ours.spec.full_x, ours.spec.full_width}),
+            (std::array{-24, 0, kWidth}));
+  const auto value = [](const Image& image, int a, int b, int channel) {
+    const int pixel = (b - image.spec.y) * image.width() + a - image.spec.x;
+    return image.pixels[std::size_t(pixel * image.channels() + channel)];
+  };
+  double squares = 0.0;
+  for (int b = kEdge; b < kHeight - kEdge; ++b) {
+    for (int a = kEdge; a < kWidth - kEdge; ++a) {
+      for (int channel = 0; channel < 3; ++channel) {
+        squares += std::pow(value(theirs, a, b, channel) - value(ours, a, b, channel), 2);
+      }
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / ((kWidth - 2 * kEdge) * (kHeight - 2 * kEdge) * 3)), kAgrees);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DriverConsumers, testing::ValuesIn(kConsumers),
