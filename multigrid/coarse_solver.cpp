@@ -31,6 +31,7 @@ template <class T>
 struct CoarseSolver<T>::Factors {
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   Eigen::VectorXd scale;  // of rows and columns: equal norms
+  Eigen::VectorXd right, solution;
   bool pressure = false;
 };
 
@@ -76,20 +77,23 @@ void CoarseSolver<T>::factorise(Level<T>& level, bool pressure, T jump) {
   const Eigen::Index first = n - Eigen::Index(2 * cuts) - volume;
   for (Eigen::Index k = first; k < n; ++k) matrix(k, k) -= 1e-7;
   factors_->lu.compute(matrix);
+  factors_->right.resize(n);
+  factors_->solution.resize(n);
 }
 
 template <class T>
 void CoarseSolver<T>::solve(Level<T>& level) const {
   const std::size_t cuts = std::size_t(level.cuts.size());
-  Eigen::VectorXd b(factors_->scale.size());
+  Eigen::VectorXd &b = factors_->right, &x = factors_->solution;
   Eigen::Index row = 0;
   for_unknowns(level.f.view(), level.fq.data(), cuts, factors_->pressure,
                [&](const T& value) { b(row++) = double(value); });
-  b = factors_->scale.cwiseProduct(b);
-  b = factors_->scale.cwiseProduct(factors_->lu.solve(b));
+  b.array() *= factors_->scale.array();
+  x = factors_->lu.solve(b);
+  x.array() *= factors_->scale.array();
   row = 0;
   for_unknowns(level.d.view(), level.dq.data(), cuts, factors_->pressure,
-               [&](T& value) { value = T(b(row++)); });
+               [&](T& value) { value = T(x(row++)); });
 }
 
 template class CoarseSolver<float>;

@@ -73,6 +73,8 @@ NewtonOptions exact_options(const Level<T>& level) {
   return options;
 }
 
+}  // namespace
+
 LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell_px) {
   for (NewtonStep& step : steps) {
     step.dx_rms_px *= cell_px;
@@ -80,8 +82,6 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
   }
   return {nx, ny, std::move(steps)};
 }
-
-}  // namespace
 
 namespace {
 
@@ -178,8 +178,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.algebraic_max_px = done.error_max * cell_px;
     const bool estimated = l != start;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    report.discretisation_rms_px = estimated ? 0.5 * done.change_rms * cell_px : unknown;
-    report.discretisation_max_px = estimated ? 0.5 * done.change_max * cell_px : unknown;
+    report.discretisation_rms_px = estimated ? kErrorOfChange * done.change_rms * cell_px : unknown;
+    report.discretisation_max_px = estimated ? kErrorOfChange * done.change_max * cell_px : unknown;
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
     if (report.status == Status::not_finite) return;
   }

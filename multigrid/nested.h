@@ -2,8 +2,7 @@
 #pragma once
 // Nested iteration: the harmonic state and Newton to the end on a small lattice, then a few Newton
 // steps on each finer one, from the interpolated solution of the coarser. What a level changes in
-// that start estimates its discretisation error for free: ½ RMS(u_h − P u_2h) for a first-order
-// method.
+// that start estimates its discretisation error for free: kErrorOfChange RMS(u_h − P u_2h).
 #include <drumhead/multigrid/warp.h>
 
 #include "newton.h"
@@ -18,6 +17,9 @@ struct NestedOptions {
   std::function<std::vector<grid::Point>(double t)> partway;
   std::function<void(const Progress&)> progress;
 };
+
+/// The steps of one level, their moves in pixels.
+LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell_px);
 
 /// Solves on all levels of the hierarchy from zero; fills status, levels and errors of the report
 /// (converted to pixels by cell_px). The state is left in hierarchy[0].

@@ -85,8 +85,8 @@ class Judge {
   bool small(const NewtonStep& step, double rounding) const {
     double wanted = options_.tolerance_rms;
     if (options_.share_of_discretisation > 0.0)
-      wanted =
-          std::max({wanted, options_.share_of_discretisation * 0.5 * report_.change_rms, rounding});
+      wanted = std::max({wanted, rounding,
+                         options_.share_of_discretisation * kErrorOfChange * report_.change_rms});
     return report_.error_rms <= wanted &&
            (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
   }

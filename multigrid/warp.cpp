@@ -16,6 +16,7 @@
 #include "analysis.h"
 #include "load_path.h"
 #include "nested.h"
+#include "restart.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -49,6 +50,14 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
   if (!(options.tolerance_px >= 0.0) || !std::isfinite(options.tolerance_px))
     throw std::invalid_argument("tolerance = " + std::to_string(options.tolerance_px) +
                                 ": must be at least 0 and finite");
+  if (options.start) {
+    const grid::Lattice& other = options.start->lattice;
+    if (other.nx != lattice.nx || other.ny != lattice.ny || other.cell_px != lattice.cell_px ||
+        !(other.origin_px == lattice.origin_px) || options.start->u_px.size() != lattice.nodes())
+      throw std::invalid_argument("the solution to start from is on a lattice of " +
+                                  std::to_string(other.nx) + " × " + std::to_string(other.ny) +
+                                  " cells: must be on the problem's own");
+  }
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 0");
@@ -158,12 +167,15 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
     nested.partway = [&](double t) {
       return grid::cut(partway(problem.curves, t), problem.lattice, most_weight).wanted;
     };
-  nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
+  if (!options.start || options.exact ||
+      !continue_iteration(hierarchy, cuts, *options.start, nested, meter, report))
+    nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
   report.solve_seconds = seconds_since(solving);
 
   report.solver_bytes = meter.peak() + hierarchy.scratch().bytes();
   report.energy = energies(hierarchy, cuts);
   export_state(hierarchy, solution);
+  solution.forces = curve_forces(hierarchy, cuts);
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }

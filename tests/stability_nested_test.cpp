@@ -54,12 +54,26 @@ TEST_P(NestedIteration, ConvergesToTheErrorThatItReports) {
   std::printf("\n");
   EXPECT_LE(report.levels.back().newton.size(), 4u);
   EXPECT_GT(report.discretisation_rms_px, 0.0);
+  EXPECT_LE(double(report.solver_bytes) / double(usual.lattice.nodes()), 90.0);
 
   const multigrid::Solution tight = solve_to(c, kCells, 1e-3);
   EXPECT_EQ(tight.report.status, multigrid::Status::converged)
       << multigrid::name(tight.report.status);
   const oracle::FieldDifference left = oracle::difference(usual, tight, 1);
   EXPECT_LT(left.rms, 0.2 * report.discretisation_rms_px * kCells);
+}
+
+// Four times as many cells leave a quarter of a first-order error.
+TEST_P(NestedIteration, EstimatesItsDiscretisationErrorWithinAFactorOfTwo) {
+  const scenes::ReferenceCase& c = GetParam();
+  const multigrid::Solution coarse = solve_to(c, kCells / 4, 0.0);
+  const multigrid::Solution fine = solve_to(c, kCells, 1e-2);
+  const double truth = oracle::difference(coarse, fine, 4).rms / 0.75;  // coarse cells
+  const double estimate = coarse.report.discretisation_rms_px * (kCells / 4);
+  std::printf("%-10s discretisation error %.3f cells RMS, estimated %.3f\n", c.name.c_str(), truth,
+              estimate);
+  EXPECT_LT(estimate, 2.0 * truth);
+  EXPECT_GT(estimate, 0.5 * truth);
 }
 
 class ClosedCurves : public testing::TestWithParam<scenes::ReferenceCase> {};

@@ -29,12 +29,19 @@ struct Progress {
   double fraction = 0.0;  ///< rough share of the whole solve that is done, 0…1
 };
 
+struct Solution;
+
 struct SolverOptions {
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
   /// discretisation error.
   double tolerance_px = 0.0;
+  /// A solution on the same lattice to go on from, where curves or material have changed a little
+  /// or curves were taken away: Newton on the finest lattice alone, to a tenth of the
+  /// discretisation error that this solution was estimated to have if no tolerance is given. Where
+  /// that does not converge, the scene is solved from the beginning.
+  const Solution* start = nullptr;
   int threads = 0;                                ///< OpenMP threads; 0: as OpenMP decides
   std::function<void(const Progress&)> progress;  ///< optional
 };
@@ -98,6 +105,13 @@ struct SolveReport {
   std::vector<std::string> notes;  ///< what the solver changed or could not do, in words
 };
 
+/// q of Eq. 5: the force, in units of mu·cell_px, that the curves exert in cell (i, j) which they
+/// cut.
+struct CurveForce {
+  int i = 0, j = 0;
+  grid::Point q;
+};
+
 /// The deformed lattice: displacement of the point that rests at node (i, j) at index j·(nx+1)+i,
 /// pressure of cell (i, j) at j·nx+i (of a split cell, the mean).
 struct Solution {
@@ -105,6 +119,7 @@ struct Solution {
   std::vector<double> u_px, v_px;
   std::vector<double> pressure;  ///< P in units of mu; empty where no pressures exist
   SplitCells split;              ///< where the lattice conforms to the curves; else empty
+  std::vector<CurveForce> forces;
   SolveReport report;
 };
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "restart.h"
+
+#include <algorithm>
+
+namespace drumhead::multigrid {
+namespace {
+
+// A change that takes more steps than this is not a small one.
+constexpr int kMostSteps = 15;
+constexpr double kShare = 0.1;
+// Residual that ends the cycles of one step: the first one has most of the change to carry.
+constexpr double kContent = 0.5;
+// A small change is nearly linear: what the first step leaves is what its linear solution leaves.
+constexpr double kFirstRate = 0.35;
+
+template <class T>
+void set_state(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, const Solution& start) {
+  Level<T>& level = hierarchy[0];
+  const double h = start.lattice.cell_px;
+  std::size_t node = 0, cell = 0;
+  for (int j = 0; j <= level.ny; ++j)
+    for (int i = 0; i <= level.nx; ++i, ++node) {
+      level.ux.view().at(i, j) = T(start.u_px[node] / h);
+      level.uy.view().at(i, j) = T(start.v_px[node] / h);
+    }
+  if (level.pressure && !start.pressure.empty())
+    for (int j = 0; j < level.ny; ++j)
+      for (int i = 0; i < level.nx; ++i) level.pressure.view().at(i, j) = T(start.pressure[cell++]);
+  // Both lists are sorted by row, then column.
+  std::size_t n = 0;
+  auto before = [](const CurveForce& f, int i, int j) { return f.j < j || (f.j == j && f.i < i); };
+  for (int j = 0; j < level.ny; ++j)
+    for (int k = cuts.row_begin[std::size_t(j)]; k < cuts.row_begin[std::size_t(j) + 1]; ++k) {
+      const int i = cuts.column[std::size_t(k)];
+      while (n < start.forces.size() && before(start.forces[n], i, j)) ++n;
+      const bool same = n < start.forces.size() && start.forces[n].i == i && start.forces[n].j == j;
+      level.q[2 * std::size_t(k)] = same ? T(start.forces[n].q.x) : T(0);
+      level.q[2 * std::size_t(k) + 1] = same ? T(start.forces[n].q.y) : T(0);
+    }
+}
+
+template <class T>
+void clear_state(Level<T>& level) {
+  level.ux.clear();
+  level.uy.clear();
+  level.pressure.clear();
+  std::ranges::fill(level.q, T(0));
+}
+
+}  // namespace
+
+template <class T>
+std::vector<CurveForce> curve_forces(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {
+  const Level<T>& level = hierarchy[0];
+  std::vector<CurveForce> forces;
+  for (int j = 0; j < level.ny; ++j)
+    for (int k = cuts.row_begin[std::size_t(j)]; k < cuts.row_begin[std::size_t(j) + 1]; ++k) {
+      const std::size_t x = 2 * std::size_t(k);
+      forces.push_back(
+          {cuts.column[std::size_t(k)], j, {double(level.q[x]), double(level.q[x + 1])}});
+    }
+  return forces;
+}
+
+template <class T>
+bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, const Solution& start,
+                        const NestedOptions& options, grid::MemoryMeter& meter,
+                        SolveReport& report) {
+  set_state(hierarchy, cuts, start);
+  Level<T>& level = hierarchy[0];
+  const double cell_px = start.lattice.cell_px;
+  NewtonOptions newton;
+  newton.most_steps = kMostSteps;
+  newton.linear.content = kContent;
+  newton.expected_rates = {kFirstRate};
+  const SolveReport& before = start.report;
+  newton.tolerance_rms = options.tolerance_cells > 0.0
+                             ? options.tolerance_cells
+                             : kShare * before.discretisation_rms_px / cell_px;
+  ClampSchedule clamp;
+  auto progress = [&](int step) {
+    if (options.progress) options.progress({level.nx, level.ny, step, std::min(1.0, 0.25 * step)});
+  };
+  NewtonReport done = Newton<T>(hierarchy, 0, meter).run(newton, clamp, progress);
+  if (done.status != Status::converged) {
+    clear_state(level);
+    return false;
+  }
+  report.status = done.status;
+  report.algebraic_rms_px = done.error_rms * cell_px;
+  report.algebraic_max_px = done.error_max * cell_px;
+  report.discretisation_rms_px = before.discretisation_rms_px;
+  report.discretisation_max_px = before.discretisation_max_px;
+  report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
+  return true;
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                              \
+  template std::vector<CurveForce> curve_forces(const Hierarchy<T>&, const grid::CutCells&); \
+  template bool continue_iteration(Hierarchy<T>&, const grid::CutCells&, const Solution&,    \
+                                   const NestedOptions&, grid::MemoryMeter&, SolveReport&);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::multigrid

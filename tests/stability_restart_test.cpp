@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Going on from an earlier solution: a dragged curve, released curves, a start that is of no use.
+#include <cmath>
+#include <stdexcept>
+
+#include <drumhead/multigrid/warp.h>
+#include <gtest/gtest.h>
+
+#include "support/scene_problem.h"
+
+namespace drumhead::multigrid {
+namespace {
+
+constexpr double kPicture = 1000.0;  // px of the unit square
+
+double rms_difference_px(const Solution& a, const Solution& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.u_px.size(); ++k)
+    sum += std::pow(a.u_px[k] - b.u_px[k], 2) + std::pow(a.v_px[k] - b.v_px[k], 2);
+  return kPicture * std::sqrt(sum / double(a.u_px.size()));
+}
+
+/// Moves the points of a target near one of its points by up to `px`, as a dragged control point
+/// does.
+void drag(grid::CurvePair& curve, double px) {
+  const double length = px / kPicture;
+  const std::size_t count = curve.target.size(), reach = count / 8;
+  for (std::size_t n = 0; n < 2 * reach; ++n) {
+    auto moved = [&](double t) {
+      const double s = (double(n) + t) / double(2 * reach);
+      return grid::Point{length * std::pow(std::sin(3.14159265358979 * s), 2), 0.0};
+    };
+    for (std::size_t c = 0; c < 4; ++c) {
+      grid::Point& p = curve.target[n].control[c];
+      p = p + moved(double(c) / 3.0);
+    }
+  }
+}
+
+int cycles(const Solution& s) {
+  int sum = 0;
+  for (const NewtonStep& step : s.report.levels.back().newton) sum += step.krylov;
+  return sum;
+}
+
+class Restart : public ::testing::TestWithParam<double> {};
+
+TEST_P(Restart, FollowsADraggedCurveToTheToleranceOnTheFinestLatticeAlone) {
+  WarpProblem problem =
+      scenes::problem(scenes::roundabout(45.0, scenes::kStudyOffset), 256, GetParam());
+  const Solution first = solve(problem);
+  ASSERT_EQ(first.report.status, Status::converged);
+  drag(problem.curves[0], 5.0);
+  const Solution truth = solve(problem, {.tolerance_px = 1e-3 / kPicture});
+  const Solution moved = solve(problem, {.tolerance_px = 0.5 / kPicture, .start = &first});
+  EXPECT_EQ(moved.report.status, Status::converged);
+  EXPECT_EQ(moved.report.levels.size(), 1u);
+  EXPECT_GT(rms_difference_px(truth, first), 0.3);  // the drag is seen at all
+  EXPECT_LT(rms_difference_px(truth, moved), 0.5);
+  EXPECT_LE(cycles(moved), 6);
+}
+INSTANTIATE_TEST_SUITE_P(Kappa, Restart, ::testing::Values(0.0, 1.0, 10.0));
+
+TEST(RestartRelease, AFoldedSceneReturnsToRest) {
+  WarpProblem problem = scenes::problem(scenes::fold(scenes::kStudyOffset), 64, 1.0);
+  const Solution folded = solve(problem);
+  ASSERT_GT(folded.report.folds.folded_cells, 0);
+  problem.curves.clear();
+  const Solution released = solve(problem, {.tolerance_px = 0.01 / kPicture, .start = &folded});
+  EXPECT_EQ(released.report.status, Status::converged);
+  EXPECT_EQ(released.report.folds.folded_cells, 0);
+  const Solution rest = solve(problem);
+  EXPECT_LT(rms_difference_px(released, rest), 0.01);
+}
+
+TEST(RestartRefusal, AStartOnAnotherLatticeIsNamed) {
+  const scenes::Scene scene = scenes::shift(scenes::kStudyOffset);
+  const Solution other = solve(scenes::problem(scene, 32, 1.0));
+  const WarpProblem problem = scenes::problem(scene, 64, 1.0);
+  try {
+    (void)solve(problem, {.start = &other});
+    FAIL() << "a start on 32 × 32 cells was taken for 64 × 64";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("32 × 32"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace drumhead::multigrid
