@@ -43,6 +43,13 @@ bool set_weight(const Value& value, Options& o) {
   return x.has_value();
 }
 
+bool set_solver(const Value& value, Options& o) {
+  const auto* text = std::get_if<std::string>(&value);
+  const auto solver = text ? multigrid::solver_named(*text) : std::nullopt;
+  if (solver) o.solver = *solver;
+  return solver.has_value();
+}
+
 bool set_tolerance(const Value& value, Options& o) {
   if (const auto* text = std::get_if<std::string>(&value); text && *text == "auto") {
     o.tolerance_px = 0.0;
@@ -122,6 +129,12 @@ const std::array kKeys = {
                 "lattice's own error",
         .fallback = "auto",
         .set = set_tolerance},
+    Key{.name = "solver",
+        .value = "NAME",
+        .bound = "one of: gcr, kaczmarz, coloured-kaczmarz, minres, minres-multigrid",
+        .help = "of the linear systems; all but gcr are there for comparison, and slower",
+        .fallback = "gcr",
+        .set = set_solver},
     Key{.name = "threads",
         .value = "N",
         .bound = "a whole number from 1 to 4096",

@@ -18,6 +18,7 @@
 #include <drumhead/grid/mask.h>
 #include <drumhead/grid/material.h>
 #include <drumhead/kernels/resample.h>
+#include <drumhead/multigrid/warp.h>
 
 #include "maps.h"
 
@@ -56,6 +57,7 @@ struct Options {
   MaskOptions mu_mask, kappa_mask;
   double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own
   bool exact = false;
+  multigrid::Solver solver = multigrid::Solver::gcr;
   double tolerance_px = 0.0;  ///< 0: a tenth of the estimated discretisation error
   int threads = 0;            ///< 0: as OpenMP decides
   bool quiet = false;

@@ -87,6 +87,7 @@ std::string report_json(const multigrid::Solution& solution, const std::string& 
                {"status", multigrid::name(report.status)},
                {"model", model},
                {"exact", report.exact},
+               {"solver", multigrid::name(report.solver)},
                {"lattice",
                 {{"nx", lattice.nx},
                  {"ny", lattice.ny},

@@ -150,7 +150,8 @@ int run_warp(Options options) {
   const Frame frame = frame_of(picture, problem.lattice, options.expand);
   seconds.read = watch.lap();
 
-  multigrid::SolverOptions solver{.exact = options.exact,
+  multigrid::SolverOptions solver{.solver = options.solver,
+                                  .exact = options.exact,
                                   .tolerance_px = options.tolerance_px,
                                   .threads = options.threads,
                                   .progress = {}};

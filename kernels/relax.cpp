@@ -122,12 +122,19 @@ struct StageList {
   void add(Stage stage) { at[std::size_t(count++)] = stage; }
 };
 
-StageList list_stages(bool clear, bool prolong, bool volume, bool cuts, bool restriction) {
+StageList list_stages(const RelaxStages& stages, bool prolong, bool volume, bool cuts,
+                      bool restriction) {
   StageList list;
-  if (clear) list.add({Sweep::clear});
+  if (stages.from_zero) list.add({Sweep::clear});
   if (prolong) list.add({Sweep::prolong});
-  for (int colour : {0, 1})
-    list.add({clear && !prolong && colour == 0 ? Sweep::start : Sweep::nodes, colour});
+  const int first = stages.sweeps == Sweeps::nodes_reversed ? 1 : 0;
+  // The first half sweep from zero needs no stencil: it starts red, and nothing is prolonged.
+  const bool start = stages.from_zero && !prolong && first == 0;
+  if (stages.sweeps != Sweeps::none)
+    for (int colour : {first, 1 - first})
+      list.add({start && colour == 0 ? Sweep::start : Sweep::nodes, colour});
+  volume = volume && stages.sweeps == Sweeps::all;
+  cuts = cuts && stages.sweeps == Sweeps::all;
   for (bool reverse : {false, true}) {
     const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
     auto add = [&](Sweep sweep) {
@@ -154,8 +161,8 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
   const Unknowns<T>& d = level.d;
   const Unknowns<const T> f = level.f;
   const int ny = d.x.rows - 1;
-  const StageList list = list_stages(stages.from_zero, coarse_d != nullptr, bool(d.p),
-                                     level.cuts.count > 0, coarse_f != nullptr);
+  const StageList list = list_stages(stages, coarse_d != nullptr, bool(d.p), level.cuts.count > 0,
+                                     coarse_f != nullptr);
   const Unknowns<T> nowhere{};
   Restriction<T> restriction(level, coarse_f ? *coarse_f : nowhere, scratch);
 

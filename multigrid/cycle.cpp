@@ -32,6 +32,12 @@ kernels::LevelSystem<T> Cycle<T>::system(int l) {
 }
 
 template <class T>
+void Cycle<T>::relax_by(Solver solver, grid::MemoryMeter& meter) {
+  smoother_.emplace(solver, meter);
+  for (int l = top_; l + 1 < hierarchy_.size(); ++l) smoother_->add(system(l));
+}
+
+template <class T>
 void Cycle<T>::run(CycleKind kind, bool from_zero) {
   descend(top_, kind, from_zero);
 }
@@ -46,14 +52,37 @@ void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
       kernels::add_curve_force(level.cuts.view(T(0)), level.dq.data(), T(1), level.f.view());
     return;
   }
-  const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);
-  kernels::relax<T>(fine, {.from_zero = from_zero}, nullptr, &coarse.f, hierarchy_.scratch());
+  relax_down(l, from_zero);
   restrict_cuts(l);
   descend(l + 1, kind, true);
   if (kind == CycleKind::f && l + 2 < hierarchy_.size()) descend(l + 1, CycleKind::v, false);
   prolong_cuts(l);
-  const kernels::Unknowns<const T> correction = coarse.d;
-  kernels::relax<T>(fine, {}, &correction, nullptr, hierarchy_.scratch());
+  relax_up(l);
+}
+
+/// Relaxation, then restriction of the residual.
+template <class T>
+void Cycle<T>::relax_down(int l, bool from_zero) {
+  const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);
+  kernels::RelaxStages stages{.from_zero = from_zero};
+  if (smoother_) {
+    stages.sweeps = kernels::Sweeps::none;
+    if (from_zero) kernels::relax<T>(fine, stages, nullptr, nullptr, hierarchy_.scratch());
+    smoother_->smooth(l - top_, fine);
+    stages.from_zero = false;
+  }
+  kernels::relax<T>(fine, stages, nullptr, &coarse.f, hierarchy_.scratch());
+}
+
+/// Prolongation of the correction, then relaxation.
+template <class T>
+void Cycle<T>::relax_up(int l) {
+  const kernels::LevelSystem<T> fine = system(l);
+  const kernels::Unknowns<const T> correction = system(l + 1).d;
+  kernels::RelaxStages stages;
+  if (smoother_) stages.sweeps = kernels::Sweeps::none;
+  kernels::relax<T>(fine, stages, &correction, nullptr, hierarchy_.scratch());
+  if (smoother_) smoother_->smooth(l - top_, fine);
 }
 
 template <class T>

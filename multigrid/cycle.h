@@ -5,9 +5,11 @@
 // bilinear interpolation, pressures by sums, curve forces by arc length (unlike Setaluri et al.
 // 2014, section 3.5, which transfers none and relaxes more near the curves instead).
 #include <limits>
+#include <optional>
 
 #include "coarse_solver.h"
 #include "hierarchy.h"
+#include "kaczmarz_smoother.h"
 
 namespace drumhead::multigrid {
 
@@ -26,6 +28,9 @@ class Cycle {
   /// harmonic system, kappa = 0. `most_clamp`: upper bound of the clamp.
   Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp);
 
+  /// Relaxes by Kaczmarz's method on all rows instead; `solver`: kaczmarz or coloured_kaczmarz.
+  void relax_by(Solver solver, grid::MemoryMeter& meter);
+
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
   /// the curve forces of dq afterwards (and must do so before, if not from zero).
   void run(CycleKind kind, bool from_zero);
@@ -35,6 +40,8 @@ class Cycle {
 
  private:
   void descend(int l, CycleKind kind, bool from_zero);
+  void relax_down(int l, bool from_zero);
+  void relax_up(int l);
   void restrict_cuts(int l);
   void prolong_cuts(int l);
 
@@ -43,6 +50,7 @@ class Cycle {
   bool pressure_;
   T clamp_width_ = T(1);
   CoarseSolver<T> bottom_;
+  std::optional<KaczmarzSmoother<T>> smoother_;
   std::vector<T> residual_;
 };
 

@@ -8,6 +8,9 @@
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
 
+#include "kaczmarz_cycles.h"
+#include "minres.h"
+
 namespace drumhead::multigrid {
 namespace {
 
@@ -158,6 +161,16 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
     std::ranges::fill(level.dq, T(0));
     report.residual = start;
     return report;
+  }
+  switch (options.solver) {
+    case Solver::gcr:
+      break;
+    case Solver::kaczmarz:
+    case Solver::coloured_kaczmarz:
+      return solve_by_kaczmarz<T>({hierarchy, top, pressure, meter}, start, options);
+    case Solver::minres:
+    case Solver::minres_multigrid:
+      return solve_by_minres<T>({hierarchy, top, pressure, meter}, start, options);
   }
   // Without the jump in the equations a cycle's own residual is of another system.
   const bool same = hierarchy.traits().jump == hierarchy.traits().jump_inside;

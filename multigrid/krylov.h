@@ -1,31 +1,27 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Solution of one Newton system on a level. Cycles alone first: they need no memory besides the
-// level's own. Only where they reduce the residual too little does flexible GCR take over, which
-// minimises the residual over its last few directions (strong stretch, indefinite systems far from
-// a solution, exact curve rows).
+// Solution of one Newton system on a level, by the solver that the options name. The recommended
+// one: cycles alone first, which need no memory besides the level's own. Only where they reduce the
+// residual too little does flexible GCR take over, which minimises the residual over its last few
+// directions (strong stretch, indefinite systems far from a solution, exact curve rows).
+#include <drumhead/multigrid/warp.h>
 
 #include "cycle.h"
+#include "newton_system.h"
 
 namespace drumhead::multigrid {
 
-/// Unknowns of a level with its curve forces.
-template <class T>
-struct Vector {
-  grid::UnknownFields<T> fields;
-  std::vector<T> q;
-};
-
 struct LinearOptions {
+  Solver solver = Solver::gcr;
   double content = 0.1;    ///< residual, relative, at which plain cycles stop
-  double reduction = 0.1;  ///< and GCR, where it is needed
+  double reduction = 0.1;  ///< and all other methods
   int most_cycles = 30;
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
 };
 
 struct LinearReport {
-  int cycles = 0;
+  int cycles = 0;         ///< or iterations of MINRES
   double residual = 1.0;  ///< relative to the right-hand side
 };
 

@@ -143,6 +143,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     };
     Newton<T> newton(hierarchy, l, meter);
     newton_options.linear = linear_options(level, l == start);
+    newton_options.linear.solver = options.solver;
     newton_options.most_steps = kLevelSteps;
     // Two steps on the coarser levels measure the contraction that the finest may then count on.
     newton_options.least_steps = l > 0 ? 2 : 1;
@@ -166,7 +167,9 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     if (l == 0 && options.exact && done.status != Status::not_finite) {
       hierarchy.drop_jump();
       ClampSchedule exact_clamp{.theta = 1.0, .most = kMostExactTheta};
-      NewtonReport exact = newton.run(exact_options(level), exact_clamp, progress);
+      NewtonOptions last_options = exact_options(level);
+      last_options.linear.solver = options.solver;
+      NewtonReport exact = newton.run(last_options, exact_clamp, progress);
       if (!(newton.largest_row_gap() < kRowMet)) exact.status = Status::infeasible;
       exact.steps.insert(exact.steps.begin(), done.steps.begin(), done.steps.end());
       exact.change_rms += done.change_rms;

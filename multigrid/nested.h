@@ -10,6 +10,7 @@
 namespace drumhead::multigrid {
 
 struct NestedOptions {
+  Solver solver = Solver::gcr;
   bool exact = false;
   double tolerance_cells = 0.0;   ///< 0: a tenth of the estimated discretisation error
   double smallest_feature = 0.0;  ///< extent of the smallest curve in finest cells

@@ -19,6 +19,10 @@ constexpr double kExactTheta = 1e6;
 constexpr int kMedianSamples = 1 << 12;
 // A linear solution this bad is not worth a step with an unclamped Hessian.
 constexpr double kStagnated = 0.8;
+// So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr, whose
+// cycles stop where Newton's method gains no more from them, were asked for a tenth.
+constexpr int kMostUnsolved = 3;
+constexpr double kUnsolved = 0.5;
 // Bounds of the contraction that a step is expected to have, and what is taken where none was seen.
 constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
 // So many steps in a row shorter than kCreep lead nowhere.
@@ -50,7 +54,11 @@ class Judge {
 
     const bool full = step.step == 1.0;
     creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
-    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping)
+    const bool gcr = options_.linear.solver == Solver::gcr;
+    const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
+    unsolved_ = solved ? 0 : unsolved_ + 1;
+    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
+        unsolved_ >= kMostUnsolved)
       return end(Status::stalled);
     // After a larger theta a step converges more slowly: no contraction is seen from it.
     const bool comparable = step.theta >= before.theta;
@@ -61,7 +69,7 @@ class Judge {
     report_.error_max = left * step.dx_max_px;
     // Where a step was shortened or theta lowered, one small step may be chance.
     trouble_ = trouble_ || !full || !comparable;
-    settled_ = full && comparable && small(step, rounding) ? settled_ + 1 : 0;
+    settled_ = full && comparable && solved && small(step, rounding) ? settled_ + 1 : 0;
     const bool enough = int(report_.steps.size()) >= options_.least_steps;
     if (enough && settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
     return full && step.dx_rms_px <= rounding && end(Status::stalled);
@@ -97,7 +105,7 @@ class Judge {
 
   const NewtonOptions& options_;
   NewtonReport& report_;
-  int creeping_ = 0, settled_ = 0;
+  int creeping_ = 0, settled_ = 0, unsolved_ = 0;
   bool trouble_ = false;
 };
 

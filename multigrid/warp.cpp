@@ -158,7 +158,8 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.cut_seconds = seconds_since(start);
 
   const Clock::time_point solving = Clock::now();
-  NestedOptions nested{.exact = options.exact,
+  NestedOptions nested{.solver = options.solver,
+                       .exact = options.exact,
                        .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
                        .smallest_feature = smallest_feature(problem),
                        .partway = {},
@@ -197,6 +198,29 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
 
 }  // namespace
 
+const char* name(Solver solver) {
+  switch (solver) {
+    case Solver::gcr:
+      return "gcr";
+    case Solver::kaczmarz:
+      return "kaczmarz";
+    case Solver::coloured_kaczmarz:
+      return "coloured-kaczmarz";
+    case Solver::minres:
+      return "minres";
+    case Solver::minres_multigrid:
+      return "minres-multigrid";
+  }
+  return "";
+}
+
+std::optional<Solver> solver_named(std::string_view wanted) {
+  for (const Solver solver : {Solver::gcr, Solver::kaczmarz, Solver::coloured_kaczmarz,
+                              Solver::minres, Solver::minres_multigrid})
+    if (wanted == name(solver)) return solver;
+  return std::nullopt;
+}
+
 const char* name(Status status) {
   switch (status) {
     case Status::converged:
@@ -218,6 +242,7 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   const kernels::ThreadLimit threads(options.threads);
   Solution solution{.lattice = problem.lattice};
   solution.report.exact = options.exact;
+  solution.report.solver = options.solver;
   solution.report.isa = kernels::name(kernels::current_isa());
   solution.report.threads = kernels::thread_limit();
   const double tolerance_cells = options.tolerance_px / problem.lattice.cell_px;

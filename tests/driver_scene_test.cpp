@@ -42,6 +42,7 @@ mu = 2
 kappa = inf
 weight = 1e3
 exact = true
+solver = "coloured-kaczmarz"
 tolerance = 0.5
 threads = 3
 output = "/tmp/c.png"
@@ -68,6 +69,7 @@ weight = "inf"
   EXPECT_TRUE(std::isinf(o.kappa));
   EXPECT_EQ(o.weight, 1000);
   EXPECT_TRUE(o.exact);
+  EXPECT_EQ(o.solver, multigrid::Solver::coloured_kaczmarz);
   EXPECT_EQ(o.tolerance_px, 0.5);
   EXPECT_EQ(o.threads, 3);
   EXPECT_EQ(o.output, "/tmp/c.png");
@@ -117,6 +119,7 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"cells = 5\ncell_size = 5", "scene.toml:2: cell_size: give either cells or cell_size"},
            {"model = \"arap\"", "model = 'arap': must be one of: crpm, harmonic"},
            {"exact = 1", "exact = 1: must be true or false"},
+           {"solver = \"cg\"", "solver = 'cg': must be one of: gcr, kaczmarz, coloured-kaczmarz"},
            {"overlay = \"a.jpg\"", "overlay = 'a.jpg': must be the path of a .png file"},
            {"output = \"\"", "output = '': must be the path of a file"},
            {"kapa = 1", "scene.toml:1: kapa = 1: unknown key; a scene has picture, curves, cells"},
@@ -155,8 +158,9 @@ TEST(DriverScene, FlagsOverruleTheScene) {
 }
 
 TEST(DriverScene, FlagsTakeTheNamedValues) {
-  const Options o = from_command_line({"12.png", "b.svg", "--kappa", "inf", "--weight=inf",
-                                       "--tolerance", "auto", "--exact", "--output", "1"});
+  const Options o =
+      from_command_line({"12.png", "b.svg", "--kappa", "inf", "--weight=inf", "--tolerance", "auto",
+                         "--exact", "--solver", "minres", "--output", "1"});
   EXPECT_EQ(o.picture, "12.png");
   EXPECT_EQ(o.curves, "b.svg");
   EXPECT_EQ(o.output, "1");
@@ -164,6 +168,7 @@ TEST(DriverScene, FlagsTakeTheNamedValues) {
   EXPECT_TRUE(std::isinf(o.weight));
   EXPECT_EQ(o.tolerance_px, 0);
   EXPECT_TRUE(o.exact);
+  EXPECT_EQ(o.solver, multigrid::Solver::minres);
 }
 
 TEST(DriverScene, WrongFlagsNameTheFlag) {
@@ -178,6 +183,7 @@ TEST(DriverScene, WrongFlagsNameTheFlag) {
                                                         {"--mu", "1e999"},
                                                         {"--weight", "-inf"},
                                                         {"--tolerance", "0"},
+                                                        {"--solver", "GCR"},
                                                         {"--threads", "-2"},
                                                         {"--model", "arap"},
                                                         {"--lattice", "a.png"}}) {

@@ -119,7 +119,7 @@ TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
             0);
   const std::string text = read_text(scratch / "r.json");
   const Json r = Json::parse(text);
-  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "lattice", "levels",
+  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "solver", "lattice", "levels",
                              "work_units", "work_unit_seconds", "error_px", "curves", "folds",
                              "energy", "seconds", "memory", "isa", "threads", "notes"}));
   EXPECT_EQ(names(r["lattice"]), (Names{"nx", "ny", "cell_px", "origin_px", "levels"}));

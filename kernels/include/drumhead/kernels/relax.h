@@ -53,8 +53,17 @@ class RowScratch {
 template <class T>
 double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch);
 
+/// Which sweeps a relaxation makes between its transfers.
+enum class Sweeps {
+  all,
+  none,
+  nodes,          ///< nodes red, nodes black alone
+  nodes_reversed  ///< nodes black, nodes red: the adjoint of `nodes`
+};
+
 struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
+  Sweeps sweeps = Sweeps::all;
 };
 
 /// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p)

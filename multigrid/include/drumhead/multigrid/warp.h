@@ -5,7 +5,9 @@
 // over a matrix-free multigrid solver. All lengths in picture pixels; a caller who has no picture
 // may take any unit.
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <drumhead/grid/curve.h>
@@ -29,9 +31,26 @@ struct Progress {
   double fraction = 0.0;  ///< rough share of the whole solve that is done, 0…1
 };
 
+/// How the linear system of a Newton step is solved.
+enum class Solver {
+  /// Multigrid cycles of Gauss–Seidel on x̂ and weighted Kaczmarz on the other rows, under flexible
+  /// GCR where they alone do not suffice. The others are for comparison.
+  gcr,
+  /// As Setaluri et al. 2014, section 3.5: V-cycles of damped-Jacobi Kaczmarz on all rows, with
+  /// Gauss–Seidel Kaczmarz near the curves before and after.
+  kaczmarz,
+  coloured_kaczmarz,  ///< V-cycles of over-relaxed Gauss–Seidel Kaczmarz on all rows in colours
+  minres,             ///< MINRES on the whole system, rows balanced
+  minres_multigrid    ///< MINRES, preconditioned by a multigrid cycle on x̂ and diagonals on P and q
+};
+const char* name(Solver solver);
+/// Nothing for a name that is none of these.
+std::optional<Solver> solver_named(std::string_view name);
+
 struct Solution;
 
 struct SolverOptions {
+  Solver solver = Solver::gcr;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
@@ -87,6 +106,7 @@ struct EnergyReport {
 struct SolveReport {
   Status status = Status::converged;
   std::string model = "crpm";
+  Solver solver = Solver::gcr;
   bool exact = false;
   int lattice_levels = 0;
   std::vector<LevelReport> levels;  ///< levels of the nested iteration, coarsest first

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// What each linear solver takes to reduce the residual of a Newton system by ten, in work units
+// (one Hessian–vector product timed in the same run), as a Markdown table: all solvers, scenes and
+// kappa.
+//   rates_bench [N]      cells a side, 128 if not given
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <limits>
+#include <vector>
+
+#include <drumhead/kernels/threads.h>
+
+#include "support/newton_level.h"
+#include "support/scene_problem.h"
+
+namespace drumhead::bench {
+namespace {
+
+using multigrid::LinearReport;
+using multigrid::Solver;
+
+/// Processor time of this thread: the rest of a busy machine does not count.
+struct Clock {
+  using time_point = std::chrono::duration<double>;
+  static time_point now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return time_point(double(t.tv_sec) + 1e-9 * double(t.tv_nsec));
+  }
+};
+
+constexpr double kJump = 0.005, kExactTheta = 1e30;
+constexpr double kReduction = 1e-3;
+// Cycles after which an entry is given up; MINRES takes several iterations for one.
+constexpr int kMostCycles = 60;
+
+constexpr Solver kSolvers[] = {Solver::gcr, Solver::kaczmarz, Solver::coloured_kaczmarz,
+                               Solver::minres, Solver::minres_multigrid};
+
+struct Entry {
+  double seconds = 0.0;
+  LinearReport report;
+};
+
+Entry measure(scenes::NewtonLevel<float>& level, Solver solver) {
+  multigrid::LinearOptions options{
+      .solver = solver, .content = kReduction, .reduction = kReduction, .most_cycles = kMostCycles};
+  Entry entry;
+  const Clock::time_point start = Clock::now();
+  entry.report = level.solve(options);
+  entry.seconds = (Clock::now() - start).count();
+  return entry;
+}
+
+void run(const scenes::Scene& scene, double kappa, int n) {
+  scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), kJump, kExactTheta);
+  const double unit = level.product_seconds<Clock>();
+  if (scene.kappa_mask)
+    std::printf("| %s mask ", scene.name.c_str());
+  else
+    std::printf("| %s kappa %g ", scene.name.c_str(), kappa);
+  for (const Solver solver : kSolvers) {
+    const Entry entry = measure(level, solver);
+    const double digits = -std::log10(entry.report.residual);
+    const bool converged = entry.report.residual <= kReduction;
+    if (digits > 0.05)
+      std::printf("| %.0f%s (%d) ", entry.seconds / unit / digits, converged ? "" : "*",
+                  entry.report.cycles);
+    else
+      std::printf("| – (%d) ", entry.report.cycles);
+  }
+  std::puts("|");
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace drumhead::bench
+
+int main(int argc, char** argv) {
+  using namespace drumhead;
+  const int n = argc > 1 ? std::atoi(argv[1]) : 128;
+  if (n < 32) {
+    std::fprintf(stderr, "usage: rates_bench [N]      N >= 32\n");
+    return 2;
+  }
+  const kernels::ThreadLimit one(1);
+  std::printf("| %d² ", n);
+  for (const multigrid::Solver solver : bench::kSolvers)
+    std::printf("| %s ", multigrid::name(solver));
+  std::puts("|\n|---|---|---|---|---|---|");
+  const double offset = scenes::kStudyOffset, infinite = std::numeric_limits<double>::infinity();
+  for (const scenes::Scene& scene :
+       {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)})
+    for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite}) bench::run(scene, kappa, n);
+  bench::run(scenes::pinch(offset), 1.0, n);
+  return 0;
+}

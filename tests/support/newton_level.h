@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The Newton system that the finest level of a scene begins with: at the solution of the level
+// above, interpolated. For tests and benchmarks of the linear solvers, on private headers of
+// multigrid/.
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include <drumhead/kernels/cuts.h>
+#include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/reduce.h>
+#include <drumhead/multigrid/warp.h>
+
+#include "krylov.h"
+#include "nested.h"
+
+namespace drumhead::scenes {
+
+template <class T>
+class NewtonLevel {
+ public:
+  /// `jump`: qs of the equations and of the preconditioner; `theta`: clamp of P in the Hessian.
+  NewtonLevel(const multigrid::WarpProblem& problem, double jump, double theta)
+      : hierarchy_(problem.lattice, problem.material,
+                   grid::cut(problem.curves, problem.lattice, kMostWeight),
+                   {.pressure = problem.material.kappa > 0.0, .jump = jump, .jump_inside = jump},
+                   meter_) {
+    multigrid::SolveReport report;
+    multigrid::nested_iteration(hierarchy_,
+                                {.smallest_feature = kSmallestFeature * double(problem.lattice.nx)},
+                                1.0, meter_, report);
+    hierarchy_.prolong_state(0);
+    level().clamp_centre = T(0);
+    level().clamp_width = T(theta);
+  }
+
+  multigrid::Level<T>& level() { return hierarchy_[0]; }
+  bool pressure() { return bool(level().pressure); }
+  multigrid::NewtonSystem<T> system() { return {hierarchy_, 0, pressure(), meter_}; }
+
+  /// Solves for the force at the state.
+  multigrid::LinearReport solve(const multigrid::LinearOptions& options) {
+    return multigrid::solve_linear<T>(hierarchy_, 0, pressure(), set_force(), options, meter_);
+  }
+
+  /// The right-hand side; returns its norm.
+  double set_force() {
+    multigrid::Level<T>& l = level();
+    const kernels::Cuts<T> cuts = system().cuts();
+    kernels::force<T>(system().membrane(), l.f.view());
+    kernels::add_curve_force<T>(cuts, l.q.data(), T(1), l.f.view());
+    kernels::apply_cuts<T>(cuts, {l.ux.view(), l.uy.view(), {}}, l.q.data(), l.fq.data());
+    for (std::size_t k = 0; k < l.wanted.size(); ++k) {
+      l.fq[2 * k] = T(-(l.wanted[k].x + double(l.fq[2 * k])));
+      l.fq[2 * k + 1] = T(-(l.wanted[k].y + double(l.fq[2 * k + 1])));
+    }
+    return system().norm(system().right_hand_side());
+  }
+
+  /// Seconds of a Hessian–vector product, the least of several.
+  template <class Clock>
+  double product_seconds() {
+    double least = 1e9;
+    for (int n = 0; n < 20; ++n) {
+      const auto start = Clock::now();
+      kernels::apply_hessian<T>(system().membrane(), level().d.view(), level().f.view());
+      const std::chrono::duration<double> seconds = Clock::now() - start;
+      least = std::min(least, seconds.count());
+    }
+    return least;
+  }
+
+ private:
+  // As multigrid::solve has them.
+  static constexpr double kMostWeight = 1e6;
+  static constexpr double kSmallestFeature = 0.2;  // of the square's side
+
+  grid::MemoryMeter meter_;
+  multigrid::Hierarchy<T> hierarchy_;
+};
+
+}  // namespace drumhead::scenes
