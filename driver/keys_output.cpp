@@ -46,8 +46,9 @@ const std::array kKeys = {
     Key{.name = "expand",
         .value = "",
         .bound = "true or false",
-        .help = "pictures and maps cover the whole padded domain; in EXR it is the data window, and "
-                "the picture stays the display window",
+        .help =
+            "pictures and maps cover the whole padded domain; in EXR it is the data window, and "
+            "the picture stays the display window",
         .set = [](const Value& v, Options& o) { return set_switch(v, o.expand); }},
     Key{.name = "linear_light",
         .value = "",
