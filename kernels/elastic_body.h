@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Rows of the elastic kernels: Hessian–vector product, linear residual, force and energy.
+#include "pressure_jump.h"
 #include "stencil.h"
 #include "sums.h"
 
@@ -71,7 +72,8 @@ template <bool kResidual, class T>
   });
 }
 
-/// Cell row j of f_p − (B d − A/kappa dP) (kResidual) or of B d − A/kappa dP.
+/// Cell row j of f_p − (B d − A/kappa dP) (kResidual) or of B d − A/kappa dP, the jump term
+/// included.
 template <bool kResidual, class T>
 [[gnu::flatten]] void linear_cells_row(const Membrane<T>& m, const Unknowns<const T>* f,
                                        const Unknowns<const T>& d, SplitRow<T> r, int j) {
@@ -94,6 +96,7 @@ template <bool kResidual, class T>
       lane.store(value, out + k);
     });
   }
+  if (m.pressure_jump > T(0)) add_pressure_jump_row(m, d.p, T(kResidual ? 1 : -1), r, j);
 }
 
 /// Node row j of −(K x̂ + Bᵀ P): the elastic force, without curve forces.

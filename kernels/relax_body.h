@@ -66,13 +66,13 @@ struct CornerInverse {
   B i00, i10, i01, i11;
 };
 
-/// One D-weighted Kaczmarz update of volume rows, B d − (A/kappa) dP = g:
-/// r = g − (B d − A/kappa dP), s = Σ B_i²/K_ii + A/kappa, d_i += B_i r/(s K_ii), dP −= r/s.
-/// `floor` keeps s positive in a cell that has collapsed to a point.
+/// One D-weighted Kaczmarz update of volume rows, B d − A/kappa dP − jump = g:
+/// r = g − (B d − A/kappa dP − jump), s = Σ B_i²/K_ii + A/kappa + weight of the jump, d_i += B_i
+/// r/(s K_ii), dP −= r/s. `floor` keeps s positive in a cell that has collapsed to a point.
 template <class L, class B, class T>
 void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T>& x,
-                  const Corners<T>& y, const T* g, T* p, B compliance, B floor,
-                  const CornerInverse<B>& inverse, int k) {
+                  const Corners<T>& y, const T* g, T* p, B compliance, const JumpSums<B>& jump,
+                  B floor, const CornerInverse<B>& inverse, int k) {
   B d1x, d1y, d2x, d2y;
   stencil.cell_diagonals(lane, zero, k, d1x, d1y, d2x, d2y);
   B x00 = lane.load(x.n00 + k), x10 = lane.load(x.n10 + k), x01 = lane.load(x.n01 + k),
@@ -82,10 +82,10 @@ void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T
   const B half(T(0.5)), quarter(T(0.25)), dp = lane.load(p + k);
   const B product =
       half * ((d1x * (y01 - y10) - d1y * (x01 - x10)) + ((x11 - x00) * d2y - (y11 - y00) * d2x));
-  const B r = lane.load(g + k) - (product - compliance * dp);
+  const B r = lane.load(g + k) - ((product - compliance * dp) - jump.difference);
   const B weight = (d2x * d2x + d2y * d2y) * (inverse.i11 + inverse.i00) +
                    (d1x * d1x + d1y * d1y) * (inverse.i01 + inverse.i10);
-  const B t = r / (quarter * weight + compliance + floor);
+  const B t = r / ((quarter * weight + compliance + floor) + jump.weight);
   const B v = half * t;
   lane.store(dp - t, p + k);
   lane.store(x11 + d2y * (v * inverse.i11), x.n11 + k);
@@ -99,47 +99,44 @@ void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T
 }
 
 /// Volume rows of the cells of columns 2k + parity in row j; they share no node.
-template <class T>
-[[gnu::flatten]] void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f,
-                                       const Unknowns<T>& d, int parity, int j) {
+template <bool kJump, class T>
+void relax_volume_cells(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d,
+                        int parity, int j) {
   const CellStencil<T> stencil(m, j, parity);
   const Corners<T> x(d.x, j, parity), y(d.y, j, parity);
   const CellCompliance<T> compliance(m, j, parity);
+  const PressureJump<T> jumps(m, d.p, j, parity);
   const T* g = f.p.half(j, parity);
   T* p = d.p.half(j, parity);
-  const int count = half_count(d.p.columns, parity);
   const T floor = T(1e-6) * m.spacing * m.spacing / (T(4) * m.mu.value);
-  if (m.inverse_diagonal) {
-    const Corners<const T> inverse(m.inverse_diagonal, j, parity);
-    for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
-      using B = decltype(zero);
-      relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k), B(floor),
-                   {lane.load(inverse.n00 + k), lane.load(inverse.n10 + k),
-                    lane.load(inverse.n01 + k), lane.load(inverse.n11 + k)},
-                   k);
-    });
-    return;
-  }
   const T inverse = T(1) / (T(4) * m.mu.value);
   const T south = j > 0 ? inverse : T(0), north = j + 1 < d.p.rows ? inverse : T(0);
-  const int last = d.p.columns - 1;
-  auto columns = [&](auto lane, auto zero, int k) {
-    using B = decltype(zero);
-    relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k), B(floor),
-                 {B(south), B(south), B(north), B(north)}, k);
-  };
-  auto edge_column = [&](int k) {  // a side of the cell lies on the fixed boundary
-    const int i = 2 * k + parity;
-    const T w = T(i > 0), e = T(i < last);
-    const Lane<T> lane;
-    relax_volume(lane, T(0), stencil, x, y, g, p, compliance(lane, T(0), k), floor,
-                 {w * south, e * south, w * north, e * north}, k);
-  };
-  const int first = parity == 0 ? 1 : 0;
-  const int end = (last & 1) == parity ? count - 1 : count;
-  if (first == 1 && count > 0) edge_column(0);
-  for_lanes<T>(first, end, columns);
-  if (end < count && end >= first) edge_column(end);
+  const bool cells = bool(m.inverse_diagonal);
+  const Corners<const T> diagonal =
+      cells ? Corners<const T>(m.inverse_diagonal, j, parity) : Corners<const T>{};
+  for_cells_of_row<T>(d.p.columns, parity,
+                      [&](auto lane, auto zero, int k, bool has_west, bool has_east) {
+                        using B = decltype(zero);
+                        JumpSums<B> jump{zero, zero};
+                        if constexpr (kJump) jump = jumps(lane, zero, k, has_west, has_east);
+                        // A side of the first and of the last cell lies on the fixed boundary.
+                        const T w = T(has_west), e = T(has_east);
+                        CornerInverse<B> at{B(w * south), B(e * south), B(w * north), B(e * north)};
+                        if (cells)
+                          at = {lane.load(diagonal.n00 + k), lane.load(diagonal.n10 + k),
+                                lane.load(diagonal.n01 + k), lane.load(diagonal.n11 + k)};
+                        relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k),
+                                     jump, B(floor), at, k);
+                      });
+}
+
+template <class T>
+[[gnu::flatten]] void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f,
+                                       const Unknowns<T>& d, int parity, int j) {
+  if (m.pressure_jump > T(0))
+    relax_volume_cells<true>(m, f, d, parity, j);
+  else
+    relax_volume_cells<false>(m, f, d, parity, j);
 }
 
 }  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

@@ -69,6 +69,7 @@ kernels::Membrane<T> Level<T>::membrane() const {
   m.compliance = {compliance_value, compliance.view()};
   m.clamp_centre = clamp_centre;
   m.clamp_width = clamp_width;
+  m.pressure_jump = pressure_jump;
   return m;
 }
 

@@ -64,6 +64,7 @@ struct Level {
   std::vector<T> dq, fq;
 
   T clamp_centre = T(0), clamp_width = T(1);
+  T pressure_jump = T(0);  ///< of the volume rows, on levels below the one that is solved
 
   Level(int nx, int ny, T spacing, const SceneTraits& traits, grid::MemoryMeter& meter);
 

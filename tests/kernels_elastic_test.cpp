@@ -26,8 +26,8 @@ TYPED_TEST_SUITE(KernelsElastic, fields::Numbers, fields::NumberName);
 
 /// body(level, oracle) for every small lattice on every instruction set.
 template <class T, class F>
-void against_oracle(F&& body) {
-  fields::for_small_lattices({}, [&](const fields::LevelSpec& spec) {
+void against_oracle(F&& body, const fields::LevelSpec& base = {}) {
+  fields::for_small_lattices(base, [&](const fields::LevelSpec& spec) {
     RandomLevel<T> level(spec);
     const KernelOracle oracle = oracle::kernel_oracle(level);
     fields::on_every_isa([&] { body(level, oracle); });
@@ -67,6 +67,21 @@ TYPED_TEST(KernelsElastic, LinearResidualEqualsTheAssembledOne) {
         oracle.packed<T>(level.f.view()) - oracle.matrix * oracle.packed<T>(level.d.view());
     EXPECT_LT(oracle::relative_error(oracle.packed<T>(out.view()), expected), kRounding<T>);
   });
+}
+
+TYPED_TEST(KernelsElastic, PressureJumpEqualsTheAssembledEdges) {
+  using T = TypeParam;
+  against_oracle<T>(
+      [](RandomLevel<T>& level, const KernelOracle& oracle) {
+        OwnedUnknowns<T> out = like(level);
+        kernels::apply_hessian<T>(level.membrane(), level.d.view(), out.view());
+        const VectorXd product = oracle.matrix * oracle.packed<T>(level.d.view());
+        EXPECT_LT(oracle::relative_error(oracle.packed<T>(out.view()), product), kRounding<T>);
+        kernels::linear_residual<T>(level.membrane(), level.f.view(), level.d.view(), out.view());
+        const VectorXd residual = oracle.packed<T>(level.f.view()) - product;
+        EXPECT_LT(oracle::relative_error(oracle.packed<T>(out.view()), residual), kRounding<T>);
+      },
+      {.pressure_jump = 0.5});
 }
 
 TYPED_TEST(KernelsElastic, LinearResidualMayOverwriteItsRightHandSide) {

@@ -42,6 +42,7 @@ void for_widths(F&& body) {
           spec.ny = rows - 1;
           spec.layout = layout;
           spec.seed = ++seed;
+          spec.pressure_jump = seed % 2 == 0 ? 0.5 : 0.0;
           body(spec);
         }
 }

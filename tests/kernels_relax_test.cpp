@@ -75,7 +75,8 @@ class Reference {
     const auto& matrix = oracle_.matrix;
     double s = -matrix.coeff(l, l);
     for (Eigen::SparseMatrix<double>::InnerIterator C(matrix, l); C; ++C)
-      if (C.row() != l) s += C.value() * C.value() / matrix.coeff(C.row(), C.row());
+      if (C.row() < oracle_.first_multiplier())
+        s += C.value() * C.value() / matrix.coeff(C.row(), C.row());
     const VectorXd before = z;
     oracle::weighted_kaczmarz(matrix, right, oracle_.first_multiplier(), {l}, z);
     z = before + s / (s + floor_) * (z - before);
@@ -135,6 +136,11 @@ TYPED_TEST(KernelsRelax, NodesAreRedBlackGaussSeidelOfTheAssembledMatrix) {
 
 TYPED_TEST(KernelsRelax, VolumeRowsAreWeightedKaczmarzOfTheAssembledMatrix) {
   expect_oracle_relaxation<TypeParam>({}, [](const LevelSpec& spec) { return spec.pressure; });
+}
+
+TYPED_TEST(KernelsRelax, VolumeRowsWithPressureJumpAreWeightedKaczmarzOfTheAssembledMatrix) {
+  expect_oracle_relaxation<TypeParam>({.pressure_jump = 0.5},
+                                      [](const LevelSpec& spec) { return spec.pressure; });
 }
 
 TYPED_TEST(KernelsRelax, HardCurveRowsAreWeightedKaczmarzOfTheAssembledMatrix) {

@@ -76,6 +76,33 @@ void set_state(const RandomLevel<T>& level, KernelOracle& oracle) {
     }
 }
 
+/// The jump term of the volume rows in the kernels' units, edge by edge.
+template <class T>
+void add_pressure_jump(const RandomLevel<T>& level, KernelOracle& oracle) {
+  if (!level.spec.pressure || level.spec.pressure_jump == 0.0) return;
+  const auto position = [&](int i, int j) {
+    return Eigen::Vector2d(oracle.h * i + double(level.ux.view().at(i, j)),
+                           oracle.h * j + double(level.uy.view().at(i, j)));
+  };
+  const auto mu = [&](int i, int j) { return oracle.scene.mu[at(j * oracle.scene.n + i)]; };
+  const auto edge = [&](int i, int j, int east, int north) {
+    const Eigen::Vector2d from = position(i + east, j + north);
+    const double squared = (position(i + 1, j + 1) - from).squaredNorm();
+    const double weight =
+        level.spec.pressure_jump * squared / (8.0 * (mu(i, j) + mu(i + east, j + north)));
+    const int a = oracle.cell(i, j), b = oracle.cell(i + east, j + north);
+    oracle.matrix.coeffRef(a, a) -= weight;
+    oracle.matrix.coeffRef(b, b) -= weight;
+    oracle.matrix.coeffRef(a, b) += weight;
+    oracle.matrix.coeffRef(b, a) += weight;
+  };
+  for (int j = 0; j < oracle.ny; ++j)
+    for (int i = 0; i < oracle.nx; ++i) {
+      if (i + 1 < oracle.nx) edge(i, j, 1, 0);
+      if (j + 1 < oracle.ny) edge(i, j, 0, 1);
+    }
+}
+
 /// D: 1 for x, y and q, h for P.
 VectorXd scales(const KernelOracle& oracle) {
   VectorXd scale = VectorXd::Ones(oracle.scene.unknowns());
@@ -135,6 +162,7 @@ KernelOracle kernel_oracle(const RandomLevel<T>& level) {
   const VectorXd scale = scales(oracle);
   oracle.matrix = assemble(oracle.scene, oracle.state, oracle.P_H).matrix;
   oracle.matrix = scale.asDiagonal() * oracle.matrix * scale.asDiagonal();
+  add_pressure_jump(level, oracle);
   return oracle;
 }
 

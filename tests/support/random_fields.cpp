@@ -227,6 +227,7 @@ kernels::Membrane<T> RandomLevel<T>::membrane() const {
   m.inverse_diagonal = inverse_diagonal.view();
   m.clamp_centre = clamp_centre;
   m.clamp_width = clamp_width;
+  m.pressure_jump = T(spec.pressure_jump);
   return m;
 }
 

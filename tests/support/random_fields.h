@@ -89,6 +89,7 @@ struct LevelSpec {
   int cuts = 0;  ///< at most: cells whose nodes are all fixed get none
   /// d of the curve rows in mu per finest cell, infinity: hard; and the jump of q.
   double stiffness = std::numeric_limits<double>::infinity(), jump = 0.0;
+  double pressure_jump = 0.0;  ///< sigma of the volume rows
   Layout layout = Layout::guarded;
   unsigned seed = 1;
 };

@@ -68,6 +68,11 @@ struct Membrane {
   /// Pressure in the Hessian: P_H = clamp(P − clamp_centre, ±clamp_width·mu).
   T clamp_centre = T(0);
   T clamp_width = T(1);
+  /// sigma: the volume rows of the linear system read B d − A/kappa dP − sigma Σ_edges L²/(8 (mu_a
+  /// + mu_b)) (dP_a − dP_b), L the deformed length of the edge between cells a and b. 0 where the
+  /// equations are solved; on coarser levels it stands for the nodes in the middle of the edges
+  /// that they lack, without which volume and curve rows contradict one another there.
+  T pressure_jump = T(0);
 };
 
 /// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then
