@@ -33,7 +33,7 @@ struct Clock {
   }
 };
 
-constexpr double kJump = 0.005, kExactTheta = 1e30;
+constexpr double kJump = 0.005, kTheta = 1.0;
 constexpr double kReduction = 1e-3;
 // Cycles after which an entry is given up; MINRES takes several iterations for one.
 constexpr int kMostCycles = 60;
@@ -57,7 +57,7 @@ Entry measure(scenes::NewtonLevel<float>& level, Solver solver) {
 }
 
 void run(const scenes::Scene& scene, double kappa, int n) {
-  scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), kJump, kExactTheta);
+  scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), kJump, kTheta);
   const double unit = level.product_seconds<Clock>();
   if (scene.kappa_mask)
     std::printf("| %s mask ", scene.name.c_str());

@@ -46,6 +46,9 @@ kernels::LevelSystem<T> Cycle<T>::system(int l) {
 
 template <class T>
 void Cycle<T>::relax_by(Solver solver, grid::MemoryMeter& meter) {
+  for (int l = top_; l < hierarchy_.size(); ++l) hierarchy_[l].pressure_jump = T(0);
+  bottom_.factorise(hierarchy_[hierarchy_.size() - 1], pressure_,
+                    T(hierarchy_.traits().jump_inside));
   smoother_.emplace(solver, meter);
   for (int l = top_; l + 1 < hierarchy_.size(); ++l) smoother_->add(system(l));
 }

@@ -28,7 +28,8 @@ class Cycle {
   /// harmonic system, kappa = 0. `most_clamp`: upper bound of the clamp.
   Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp);
 
-  /// Relaxes by Kaczmarz's method on all rows instead; `solver`: kaczmarz or coloured_kaczmarz.
+  /// Relaxes by Kaczmarz's method on all rows instead, and as the paper has no jump term in the
+  /// volume rows of coarse levels; `solver`: kaczmarz or coloured_kaczmarz.
   void relax_by(Solver solver, grid::MemoryMeter& meter);
 
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries

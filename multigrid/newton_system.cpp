@@ -16,7 +16,9 @@ NewtonSystem<T>::NewtonSystem(Hierarchy<T>& hierarchy, int top, bool pressure,
 
 template <class T>
 kernels::Membrane<T> NewtonSystem<T>::membrane() const {
-  return pressure_ ? level().membrane() : level().harmonic();
+  kernels::Membrane<T> m = pressure_ ? level().membrane() : level().harmonic();
+  m.pressure_jump = T(0);  // for levels below the one that is solved
+  return m;
 }
 
 template <class T>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The Newton system that the finest level of a scene begins with: at the solution of the level
-// above, interpolated. For tests and benchmarks of the linear solvers, on private headers of
-// multigrid/.
+// The Newton system that the finest level of a scene begins with: at the solution, restricted to
+// the next level and interpolated back (kappa infinite: at that of kappa 1e4). For tests and
+// benchmarks of the linear solvers, on private headers of multigrid/.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
 
 #include <drumhead/kernels/cuts.h>
@@ -22,7 +23,7 @@ class NewtonLevel {
  public:
   /// `jump`: qs of the equations and of the preconditioner; `theta`: clamp of P in the Hessian.
   NewtonLevel(const multigrid::WarpProblem& problem, double jump, double theta)
-      : hierarchy_(problem.lattice, problem.material,
+      : hierarchy_(problem.lattice, compressible(problem.material),
                    grid::cut(problem.curves, problem.lattice, kMostWeight),
                    {.pressure = problem.material.kappa > 0.0, .jump = jump, .jump_inside = jump},
                    meter_) {
@@ -31,7 +32,9 @@ class NewtonLevel {
                                 {.smallest_feature = kSmallestFeature * double(problem.lattice.nx)},
                                 1.0, meter_, report);
     hierarchy_.prolong_state(0);
-    level().clamp_centre = T(0);
+    for (int l = 0; std::isinf(problem.material.kappa) && l < hierarchy_.size(); ++l)
+      hierarchy_[l].compliance_value = T(0);
+    level().clamp_centre = median_pressure();
     level().clamp_width = T(theta);
   }
 
@@ -72,6 +75,21 @@ class NewtonLevel {
   }
 
  private:
+  /// The state is that of the kappa which multigrid::solve takes for infinity.
+  static grid::Material compressible(grid::Material material) {
+    material.kappa = std::min(material.kappa, 1e4);
+    return material;
+  }
+  T median_pressure() {
+    std::vector<T> values;
+    const kernels::Plane<T> p = level().pressure.view();
+    for (int j = 0; j < p.rows; ++j)
+      for (int i = 0; i < p.columns; ++i) values.push_back(p.at(i, j));
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.empty() ? T(0) : *middle;
+  }
+
   // As multigrid::solve has them.
   static constexpr double kMostWeight = 1e6;
   static constexpr double kSmallestFeature = 0.2;  // of the square's side

@@ -44,7 +44,7 @@ class CurveNodes {
 
 template <class T>
 struct KaczmarzSystem {
-  LevelSystem<T> level;
+  LevelSystem<T> level;  ///< without a jump term in the volume rows: pressure_jump 0
   SingleNodes<T> nodes;
   Plane<const T> alpha2;     ///< α² per cell; null where the membrane has no pressures
   const T* beta2 = nullptr;  ///< β² per cut
