@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "canvas.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -155,8 +156,8 @@ void Canvas::write_text(double x, double y, const std::string& text, bool centre
   cairo_show_text(context, text.c_str());
 }
 
-void Canvas::write_png(const std::filesystem::path& file, const ShareDone& progress) const {
-  const auto output = OIIO::ImageOutput::create("png");
+void Canvas::write_to(OIIO::ImageOutput& output, const std::string& name,
+                      const ShareDone& progress) const {
   cairo_surface_flush(surface_.get());
   bool opaque = true;
   for (int y = 0; y < height_ && opaque; ++y) {
@@ -167,10 +168,9 @@ void Canvas::write_png(const std::filesystem::path& file, const ShareDone& progr
   if (!opaque) spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
   const auto check = [&](bool done) {
-    if (!done)
-      throw std::runtime_error(file.string() + ": cannot be written: " + output->geterror());
+    if (!done) throw std::runtime_error(name + ": cannot be written: " + output.geterror());
   };
-  check(output->open(file.string(), spec));
+  check(output.open(name, spec));
   std::vector<std::uint8_t> line(std::size_t(width_) * std::size_t(channels));
   for (int y = 0; y < height_; ++y) {
     auto* out = line.data();
@@ -182,10 +182,22 @@ void Canvas::write_png(const std::filesystem::path& file, const ShareDone& progr
       }
       if (!opaque) *out++ = std::uint8_t(a);
     }
-    check(output->write_scanline(y, 0, OIIO::TypeDesc::UINT8, line.data()));
+    check(output.write_scanline(y, 0, OIIO::TypeDesc::UINT8, line.data()));
     if (progress && y % 64 == 0) progress(double(y) / height_);
   }
-  check(output->close());
+  check(output.close());
+}
+
+void Canvas::write_png(const std::filesystem::path& file, const ShareDone& progress) const {
+  write_to(*OIIO::ImageOutput::create("png"), file.string(), progress);
+}
+
+std::string Canvas::png() const {
+  OIIO::Filesystem::IOVecOutput bytes;
+  const auto output = OIIO::ImageOutput::create("png");
+  output->set_ioproxy(&bytes);
+  write_to(*output, "page.png", {});
+  return {bytes.buffer().begin(), bytes.buffer().end()};
 }
 
 }  // namespace drumhead::driver

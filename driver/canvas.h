@@ -21,8 +21,8 @@ struct Colour {
 
 class Canvas {
  public:
-  /// The greatest side of a picture file.
-  static constexpr int kFileSide = 16384;
+  /// The greatest side of a picture file, and of a picture on a page.
+  static constexpr int kFileSide = 16384, kPageSide = 1024;
 
   /// Of the frame's size; enlarged by a whole factor where the frame's longer side has less than
   /// 500 pixels, made smaller by one where it has more than `greatest_side`. Below the frame
@@ -56,6 +56,8 @@ class Canvas {
 
   /// Throws std::runtime_error naming `file`.
   void write_png(const std::filesystem::path& file, const ShareDone& progress = {}) const;
+  /// The file's bytes.
+  std::string png() const;
 
  private:
   std::uint32_t* row(int y) const;

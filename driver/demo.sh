@@ -31,7 +31,7 @@ done
 
 echo
 for scene in "$@"; do
-  for result in -before.png .png -overlay.png .json; do
+  for result in -before.png .png -overlay.png -checkerboard.png -jacobian.png .json .html; do
     [ ! -e "$results/$scene$result" ] || echo "$PWD/$results/$scene$result"
   done
 done

@@ -8,9 +8,7 @@
 #include <limits>
 #include <memory>
 
-#include "jacobian.h"
 #include "overlay.h"
-#include "render.h"
 
 namespace drumhead::driver {
 namespace {
@@ -31,6 +29,26 @@ struct Point {
   bool upright = true;
 };
 
+/// The deformed lattice in the pixels of a canvas.
+multigrid::Solution scaled(const multigrid::Solution& solution, const Frame& frame, double scale) {
+  multigrid::Solution result{.lattice = solution.lattice,
+                             .u_px = solution.u_px,
+                             .v_px = solution.v_px,
+                             .split = solution.split};
+  result.lattice.cell_px *= scale;
+  grid::Point& origin = result.lattice.origin_px;
+  origin = {(origin.x - frame.left) * scale, (origin.y - frame.top) * scale};
+  for (double& u : result.u_px) u *= scale;
+  for (double& v : result.v_px) v *= scale;
+  for (kernels::MapTriangle& triangle : result.split.triangle) {
+    for (kernels::Position& p : triangle.rest) {
+      p = {(p.x - frame.left) * scale, (p.y - frame.top) * scale};
+    }
+    for (kernels::Position& d : triangle.displacement) d = {d.x * scale, d.y * scale};
+  }
+  return result;
+}
+
 /// Gives every pixel of the frame colour(point): the backward map of the warp at the canvas's
 /// scale.
 template <class Paint>
@@ -38,16 +56,8 @@ void paint(const multigrid::Solution& solution, int threads, Canvas& canvas,
            const ShareDone& progress, const Paint& colour) {
   const double scale = canvas.scale();
   const Frame& frame = canvas.frame();
-  const auto scaled = [&](std::vector<double> values) {
-    for (double& value : values) value *= scale;
-    return values;
-  };
-  const std::vector<double> u = scaled(solution.u_px), v = scaled(solution.v_px);
-  kernels::LatticeMapView map = map_of(solution);
-  map.u = u.data();
-  map.v = v.data();
-  map.cell_px *= scale;
-  map.origin_px = {(map.origin_px.x - frame.left) * scale, (map.origin_px.y - frame.top) * scale};
+  const multigrid::Solution on_canvas = scaled(solution, frame, scale);
+  const kernels::LatticeMapView map = map_of(on_canvas);
   const int columns = canvas.columns(), step = std::max(1, kBandPixels / columns);
   std::vector<kernels::Position> source(std::size_t(columns) * std::size_t(step));
   const auto jacobian = std::make_unique<float[][4]>(source.size());
@@ -137,9 +147,19 @@ Colour colour_of(double det) {
   return blend(kScale[k], kScale[k + 1], x - double(k));
 }
 
+/// det J of the cell that holds a rest position; 1 outside the lattice, where nothing moves.
+double det_J(const multigrid::Solution& solution, kernels::Position rest_px) {
+  const grid::Lattice& lattice = solution.lattice;
+  const grid::Point cell = lattice.to_cells({rest_px.x, rest_px.y});
+  if (!(cell.x >= 0 && cell.x <= lattice.nx && cell.y >= 0 && cell.y <= lattice.ny)) return 1.0;
+  return multigrid::cell_J(solution, std::min(int(cell.x), lattice.nx - 1),
+                           std::min(int(cell.y), lattice.ny - 1))
+      .centre;
+}
+
 /// A ring at each place with folded cells; places closer than a ring's width share one.
 /// Returns the number of folded cells.
-int mark_folds(const multigrid::Solution& solution, const JacobianField& field, Canvas& canvas) {
+int mark_folds(const multigrid::Solution& solution, Canvas& canvas) {
   constexpr double kRadius = 9.0;  // units
   const double radius = kRadius * canvas.unit() / canvas.scale();
   const kernels::LatticeMapView map = map_of(solution);
@@ -148,7 +168,7 @@ int mark_folds(const multigrid::Solution& solution, const JacobianField& field, 
   int folded = 0;
   for (int j = 0; j < lattice.ny; ++j) {
     for (int i = 0; i < lattice.nx; ++i) {
-      if (!field.folded(i, j)) continue;
+      if (!(multigrid::cell_J(solution, i, j).least_corner < 0.0)) continue;
       ++folded;
       const grid::Point rest = lattice.rest_px(i, j);
       const kernels::Position p = kernels::forward_position(
@@ -208,10 +228,9 @@ void draw_checkerboard(const multigrid::Solution& solution, int width, int heigh
 
 void draw_jacobian(const multigrid::Solution& solution, const std::vector<SvgCurve>& curves,
                    int threads, Canvas& canvas, const ShareDone& progress) {
-  const JacobianField field(solution);
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   paint(solution, threads, canvas, progress, [&](const Point& point) {
-    const double det = field.at(point.rest);
+    const double det = det_J(solution, point.rest);
     least = std::min(least, det);
     greatest = std::max(greatest, det);
     return point.upright ? colour_of(det) : kFolded;
@@ -220,7 +239,7 @@ void draw_jacobian(const multigrid::Solution& solution, const std::vector<SvgCur
     add_chain(curve.pair.target, solution.lattice.cell_px, canvas, [](grid::Point p) { return p; });
     canvas.stroke({0.2, 0.2, 0.2, 0.7}, 1.2);
   }
-  const int folded = mark_folds(solution, field, canvas);
+  const int folded = mark_folds(solution, canvas);
   write_legend(least, greatest, folded, canvas);
 }
 

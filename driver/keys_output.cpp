@@ -81,6 +81,13 @@ const std::array kKeys = {
         .help = "convergence, errors, gap of every curve, folds, energy, seconds, memory",
         .set = set_file<&Options::report>,
         .path = true},
+    Key{.name = "page",
+        .value = "HTML",
+        .bound = "the path of an .html file",
+        .help = "the report as a page, one file: before and after under a slider, overlay, det J, "
+                "every Newton step, every curve",
+        .set = [](const Value& v, Options& o) { return set_path(v, ".html", o.page); },
+        .path = true},
     Key{.name = "quiet",
         .value = "",
         .bound = "true or false",

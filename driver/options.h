@@ -44,7 +44,7 @@ struct Options {
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
   std::filesystem::path curves;  ///< SVG; the picture itself where that is an SVG and this is empty
   std::filesystem::path output, report;  ///< empty: not written, as the next
-  std::filesystem::path overlay, checkerboard, jacobian;
+  std::filesystem::path overlay, checkerboard, jacobian, page;
   kernels::Border border = kernels::Border::clamp;  ///< beyond the picture
   bool expand = false;        ///< the whole padded domain is rendered, not only the picture
   bool linear_light = false;  ///< integer pictures are decoded from sRGB before they are filtered
@@ -66,9 +66,9 @@ struct Options {
 
 /// Every file that a run may write.
 inline constexpr std::array kOutputFiles = {
-    &Options::output,        &Options::report,       &Options::overlay,     &Options::checkerboard,
-    &Options::jacobian,      &Options::backward_map, &Options::forward_map, &Options::lattice_file,
-    &Options::lattice_cells, &Options::lattice_vtk};
+    &Options::output,       &Options::report,        &Options::overlay,      &Options::checkerboard,
+    &Options::jacobian,     &Options::page,          &Options::backward_map, &Options::forward_map,
+    &Options::lattice_file, &Options::lattice_cells, &Options::lattice_vtk};
 
 /// A key's value as the scene's or the command line's syntax gives it.
 using Value = std::variant<bool, std::int64_t, double, std::string>;

@@ -7,6 +7,7 @@
 #include <drumhead/kernels/resample.h>
 #include <drumhead/multigrid/warp.h>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "frame.h"
@@ -21,6 +22,11 @@ struct PictureFiles {
   std::filesystem::path output, overlay, checkerboard, jacobian;
 };
 
+/// PNG files, at most 1024 pixels wide and high.
+struct PagePictures {
+  std::string before, after, overlay, jacobian;
+};
+
 struct PictureTask {
   const Image& picture;
   const multigrid::Solution& solution;
@@ -30,9 +36,9 @@ struct PictureTask {
   int threads = 0;
 };
 
-/// Writes what `files` names. Adds to seconds.render and seconds.write. Throws std::runtime_error
-/// naming the file.
-void make_pictures(const PictureTask& task, const PictureFiles& files, Progress& progress,
-                   Seconds& seconds);
+/// Writes what `files` names and, where `page` is not null, makes its pictures. Adds to
+/// seconds.render and seconds.write. Throws std::runtime_error naming the file.
+void make_pictures(const PictureTask& task, const PictureFiles& files, PagePictures* page,
+                   Progress& progress, Seconds& seconds);
 
 }  // namespace drumhead::driver

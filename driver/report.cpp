@@ -64,11 +64,12 @@ Json memory_json(const multigrid::Solution& solution) {
           {"peak_rss_bytes", std::int64_t(usage.ru_maxrss) * 1024}};
 }
 
+Json frame_json(const Frame& frame) { return {frame.left, frame.top, frame.width, frame.height}; }
+
 Json maps_json(const MapReport& maps) {
-  const Frame& frame = maps.format.frame;
   const RoundTrip& round_trip = maps.round_trip;
   return {{"convention", name(maps.format.convention)},
-          {"frame", {frame.left, frame.top, frame.width, frame.height}},
+          {"frame", frame_json(maps.format.frame)},
           {"round_trip_px",
            {{"rms", finite(round_trip.rms_px)},
             {"max", finite(round_trip.max_px)},
@@ -79,7 +80,8 @@ Json maps_json(const MapReport& maps) {
 }  // namespace
 
 std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Seconds& seconds, const std::optional<MapReport>& maps) {
+                        const Frame& frame, const Seconds& seconds,
+                        const std::optional<MapReport>& maps) {
   const multigrid::SolveReport& report = solution.report;
   const grid::Lattice& lattice = solution.lattice;
   const multigrid::EnergyReport& energy = report.energy;
@@ -95,6 +97,7 @@ std::string report_json(const multigrid::Solution& solution, const std::string& 
                  {"origin_px", position(lattice.origin_px)},
                  {"levels", report.lattice_levels}}},
                {"levels", levels_json(report)},
+               {"frame", frame_json(frame)},
                {"work_units", finite(report.work_units)},
                {"work_unit_seconds", finite(report.work_unit_seconds)},
                {"error_px",
@@ -124,9 +127,9 @@ std::string report_json(const multigrid::Solution& solution, const std::string& 
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void write_report(const std::string& json, const std::filesystem::path& file) {
+void write_text(const std::string& text, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary);
-  if (!(stream << json << std::flush)) {
+  if (!(stream << text << std::flush)) {
     throw std::runtime_error(file.string() + ": cannot be written");
   }
 }

@@ -21,11 +21,13 @@ struct MapReport {
   RoundTrip round_trip;
 };
 
-/// `model` as the user named it; the key "maps" is there only with `maps`.
+/// `model` as the user named it, `frame` the pixels of the warped picture; the key "maps" is there
+/// only with `maps`.
 std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Seconds& seconds, const std::optional<MapReport>& maps);
+                        const Frame& frame, const Seconds& seconds,
+                        const std::optional<MapReport>& maps);
 
 /// Throws std::runtime_error naming `file`.
-void write_report(const std::string& json, const std::filesystem::path& file);
+void write_text(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace drumhead::driver

@@ -12,6 +12,7 @@
 #include "image.h"
 #include "lattice_files.h"
 #include "masks.h"
+#include "page.h"
 #include "pictures.h"
 #include "progress.h"
 #include "render.h"
@@ -162,12 +163,13 @@ int run_warp(Options options) {
   seconds.solve = solution.report.solve_seconds;
   watch.lap();
 
+  PagePictures page;
   make_pictures({picture, solution, drawing.curves, frame, options.border, options.threads},
                 {.output = outputs.wanted(options.output),
                  .overlay = outputs.wanted(options.overlay),
                  .checkerboard = outputs.wanted(options.checkerboard),
                  .jacobian = outputs.wanted(options.jacobian)},
-                progress, seconds);
+                options.page.empty() ? nullptr : &page, progress, seconds);
   watch.lap();
 
   progress.show("writing");
@@ -175,8 +177,10 @@ int run_warp(Options options) {
   const auto maps = write_maps(options, picture, frame, solution, outputs);
   seconds.write += watch.lap();
   seconds.total = whole.lap();
-  if (!options.report.empty()) {
-    write_report(report_json(solution, options.model, seconds, maps), outputs[options.report]);
+  const std::string report = report_json(solution, options.model, frame, seconds, maps);
+  if (!options.report.empty()) write_text(report, outputs[options.report]);
+  if (!options.page.empty()) {
+    write_text(page_html(options.picture.filename(), report, page), outputs[options.page]);
   }
   outputs.commit();
 

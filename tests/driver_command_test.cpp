@@ -7,6 +7,7 @@
 
 #include "driver_scratch.h"
 #include "image.h"
+#include "progress.h"
 
 namespace drumhead::driver {
 namespace {
@@ -138,6 +139,8 @@ TEST_F(DriverCommand, RefusesPicturesThatItCannotMake) {
                  {"--border torus: must be one of: clamp, mirror, transparent"});
   expect_refused({"warp", "photo.png", "curves.svg", "--jacobian", "j.jpg"},
                  {"--jacobian j.jpg: must be the path of a .png file"});
+  expect_refused({"warp", "photo.png", "curves.svg", "--page", "page.pdf"},
+                 {"--page page.pdf: must be the path of an .html file"});
   expect_refused({"warp", "photo.png", "curves.svg", "--checkerboard", "no/folder/c.png"},
                  {"no/folder/c.png: cannot be written: No such file or directory"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--cells", "2", "--margin",
@@ -150,6 +153,13 @@ TEST_F(DriverCommand, LeavesAnOldOutputAloneWhenItRefuses) {
   scratch.write("bad.svg", drawing(40, 40, ""));
   expect_refused({"warp", "photo.png", "bad.svg", "-o", "out.png"}, {"bad.svg: no curves"});
   EXPECT_EQ(read_text(scratch / "out.png"), "old");
+}
+
+TEST(DriverProgress, TimeLeftIsSaidInTheUnitThatFits) {
+  EXPECT_EQ(duration_in_words(-1), "0 s");
+  EXPECT_EQ(duration_in_words(59.4), "59 s");
+  EXPECT_EQ(duration_in_words(125), "2:05 min");
+  EXPECT_EQ(duration_in_words(3720), "1:02 h");
 }
 
 TEST_F(DriverCommand, SaysItsVersion) {

@@ -104,6 +104,49 @@ TEST_F(DriverWarp, ASceneDoesWhatItsFlagsDo) {
   EXPECT_EQ(read_image(scratch / "scene.png").pixels, read_image(scratch / "flags.png").pixels);
 }
 
+TEST_F(DriverWarp, ExpandShowsTheWholePaddedDomain) {
+  draw("<g id='pin'><circle cx='48' cy='32' r='20'/></g>");
+  const RunResult result =
+      run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "24", "--expand",
+                             "--border", "transparent", "-o", "out.png", "--report", "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(read_text(scratch / "r.json"));
+  const int left = report["frame"][0], top = report["frame"][1];
+  const Image in = read_image(scratch / "photo.png"), out = read_image(scratch / "out.png");
+  EXPECT_EQ(out.width(), report["frame"][2]);
+  EXPECT_EQ(out.height(), report["frame"][3]);
+  EXPECT_EQ(double(left), report["lattice"]["origin_px"][0]);
+  ASSERT_EQ(out.channels(), 4);
+  for (int y = top; y < top + out.height(); ++y) {
+    for (int x = left; x < left + out.width(); ++x) {
+      const float* p = &out.pixels[std::size_t((y - top) * out.width() + x - left) * 4];
+      const bool inside = x >= 0 && x < kWidth && y >= 0 && y < kHeight;
+      ASSERT_EQ(p[3], inside ? 1.0f : 0.0f) << x << ' ' << y;
+      if (inside) {
+        ASSERT_EQ(p[2], in.pixels[std::size_t(y * kWidth + x) * 3 + 2]);
+      }
+    }
+  }
+}
+
+TEST_F(DriverWarp, ATerminalSeesEveryPhaseWithItsTimeLeft) {
+  Image large{OIIO::ImageSpec(3600, 2400, 3, OIIO::TypeDesc::UINT8), {}};
+  for (int k = 0; k < 3600 * 2400 * 3; ++k) {
+    large.pixels.push_back(float(k * 2654435761u >> 24) / 255);
+  }
+  write_image(large, scratch / "photo.png");
+  draw_shift(10);
+  const RunResult result = run_program(
+      scratch,
+      {"script", "-qec", std::string(DRUMHEAD_EXECUTABLE) + " warp photo.png curves.svg -o out.png",
+       "typescript"});
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* phase : {"reading photo.png ", "cutting 1 curves", "solving ",
+                            "rendering and writing ", " s left", "converged in "}) {
+    EXPECT_NE(result.out.find(phase), std::string::npos) << phase;
+  }
+}
+
 std::set<std::string> names(const Json& object) {
   std::set<std::string> all;
   for (const auto& [key, value] : object.items()) all.insert(key);
@@ -120,8 +163,8 @@ TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
   const std::string text = read_text(scratch / "r.json");
   const Json r = Json::parse(text);
   EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "solver", "lattice", "levels",
-                             "work_units", "work_unit_seconds", "error_px", "curves", "folds",
-                             "energy", "seconds", "memory", "isa", "threads", "notes"}));
+                             "frame", "work_units", "work_unit_seconds", "error_px", "curves",
+                             "folds", "energy", "seconds", "memory", "isa", "threads", "notes"}));
   EXPECT_EQ(names(r["lattice"]), (Names{"nx", "ny", "cell_px", "origin_px", "levels"}));
   ASSERT_FALSE(r["levels"].empty());
   EXPECT_EQ(names(r["levels"].back()), (Names{"nx", "ny", "newton"}));
