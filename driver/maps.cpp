@@ -78,7 +78,7 @@ std::string described(MapConvention convention, bool backward) {
 /// positions(first, rows, to): the map's rows as Positions.
 template <class Rows>
 void write_map(const MapFormat& format, bool backward, const std::filesystem::path& file,
-               const Rows& positions) {
+               const MapProgress& progress, const Rows& positions) {
   const Frame& frame = format.frame;
   const FloatExr exr{.data = frame,
                      .display = {0, 0, format.width, format.height},
@@ -99,6 +99,7 @@ void write_map(const MapFormat& format, bool backward, const std::filesystem::pa
         *pixels++ = g;
       }
     }
+    if (progress) progress(double(first + rows) / frame.height);
   });
 }
 
@@ -167,23 +168,24 @@ std::optional<MapConvention> map_convention(std::string_view name) {
 }
 
 void write_backward_map(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
-                        const std::filesystem::path& file) {
+                        const std::filesystem::path& file, const MapProgress& progress) {
   const Frame& w = format.frame;
-  write_map(format, true, file, [&](int first, int rows, Position* to) {
+  write_map(format, true, file, progress, [&](int first, int rows, Position* to) {
     kernels::backward_map(
         map, {to, nullptr, nullptr, w.width, rows, w.width, w.left, w.top + first}, threads);
   });
 }
 
 void write_forward_map(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
-                       const std::filesystem::path& file) {
+                       const std::filesystem::path& file, const MapProgress& progress) {
   const Frame& w = format.frame;
-  write_map(format, false, file, [&](int first, int rows, Position* to) {
+  write_map(format, false, file, progress, [&](int first, int rows, Position* to) {
     kernels::forward_map(map, {to, w.width, rows, w.width, w.left, w.top + first}, threads);
   });
 }
 
-RoundTrip round_trip(const kernels::LatticeMapView& map, const MapFormat& format, int threads) {
+RoundTrip round_trip(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
+                     const MapProgress& progress) {
   constexpr int kRows = 256;
   const Frame& w = format.frame;
   const Code code(format);
@@ -206,6 +208,7 @@ RoundTrip round_trip(const kernels::LatticeMapView& map, const MapFormat& format
         if (const auto there = forward.at(from)) sampled.add(*there, at);
       }
     }
+    if (progress) progress(double(first + rows) / w.height);
   }
   result.rms_px = exact.rms();
   result.max_px = exact.max();

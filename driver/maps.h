@@ -16,6 +16,7 @@
 #include <drumhead/kernels/resample.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -35,11 +36,15 @@ struct MapFormat {
   Frame frame;                ///< pixels that the map holds: its data window
 };
 
-/// Throws std::runtime_error naming `file`, as the next.
+/// Hears of the share that is done, now and then.
+using MapProgress = std::function<void(double done)>;
+
+/// In bands: beside the warp they need some 50 MB, however large the frame is. Throws
+/// std::runtime_error naming `file`, as the next.
 void write_backward_map(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
-                        const std::filesystem::path& file);
+                        const std::filesystem::path& file, const MapProgress& progress = {});
 void write_forward_map(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
-                       const std::filesystem::path& file);
+                       const std::filesystem::path& file, const MapProgress& progress = {});
 
 /// Distance of forward(backward(centre)) from the centre, in pixels, over the output pixels of the
 /// frame that have a source with J > 0. The backward map is taken as the file rounds it.
@@ -51,6 +56,7 @@ struct RoundTrip {
   /// folded.
   double sampled_rms_px = 0.0, sampled_max_px = 0.0;
 };
-RoundTrip round_trip(const kernels::LatticeMapView& map, const MapFormat& format, int threads);
+RoundTrip round_trip(const kernels::LatticeMapView& map, const MapFormat& format, int threads,
+                     const MapProgress& progress = {});
 
 }  // namespace drumhead::driver

@@ -108,19 +108,23 @@ void write_lattice_files(const Options& options, const multigrid::Solution& solu
 /// What the report says of the maps; nothing if none was asked for, or no report.
 std::optional<MapReport> write_maps(const Options& options, const Image& picture,
                                     const Frame& frame, const multigrid::Solution& solution,
-                                    const Outputs& outputs) {
+                                    const Outputs& outputs, Progress& progress) {
   const kernels::LatticeMapView map = map_of(solution);
   const int threads = options.threads;
   const MapFormat format{options.map_convention, picture.width(), picture.height(), frame};
-  if (!options.backward_map.empty()) {
-    write_backward_map(map, format, threads, outputs[options.backward_map]);
+  const auto in_phase = [&](const std::string& phase) -> MapProgress {
+    progress.show(phase, 0.0);
+    return [&progress, phase](double done) { progress.show(phase, done); };
+  };
+  if (const fs::path& file = options.backward_map; !file.empty()) {
+    write_backward_map(map, format, threads, outputs[file], in_phase("writing " + file.string()));
   }
-  if (!options.forward_map.empty()) {
-    write_forward_map(map, format, threads, outputs[options.forward_map]);
+  if (const fs::path& file = options.forward_map; !file.empty()) {
+    write_forward_map(map, format, threads, outputs[file], in_phase("writing " + file.string()));
   }
   const bool none = options.backward_map.empty() && options.forward_map.empty();
   if (none || options.report.empty()) return {};
-  return MapReport{format, round_trip(map, format, threads)};
+  return MapReport{format, round_trip(map, format, threads, in_phase("map round trip"))};
 }
 
 Image read_picture(const Options& options, Progress& progress) {
@@ -174,7 +178,7 @@ int run_warp(Options options) {
 
   progress.show("writing");
   write_lattice_files(options, solution, outputs);
-  const auto maps = write_maps(options, picture, frame, solution, outputs);
+  const auto maps = write_maps(options, picture, frame, solution, outputs, progress);
   seconds.write += watch.lap();
   seconds.total = whole.lap();
   const std::string report = report_json(solution, options.model, frame, seconds, maps);

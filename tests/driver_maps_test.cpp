@@ -46,10 +46,10 @@ struct Map {
 class DriverMaps : public testing::Test {
  protected:
   using Write = void (*)(const kernels::LatticeMapView&, const MapFormat&, int,
-                         const std::filesystem::path&);
+                         const std::filesystem::path&, const MapProgress&);
   Map written(Write write, const WarpedLattice& lattice, MapConvention convention,
               const Frame& frame = kPicture) {
-    write(lattice.view(), {convention, kWidth, kHeight, frame}, 2, scratch / "map.exr");
+    write(lattice.view(), {convention, kWidth, kHeight, frame}, 2, scratch / "map.exr", {});
     return {read_image(scratch / "map.exr"), frame};
   }
 
@@ -167,6 +167,20 @@ TEST_F(DriverMaps, TheRoundTripIsRoundingForTheWarpAndInterpolationForTheFiles) 
     EXPECT_LT(smooth.sampled_max_px, 0.04);
     EXPECT_LT(smooth.sampled_rms_px, 0.4 * smooth.sampled_max_px);
   }
+}
+
+TEST_F(DriverMaps, ProgressEndsAtOneAndNeverFalls) {
+  double last = 0.0;
+  int calls = 0;
+  const MapProgress progress = [&](double done) {
+    EXPECT_GT(done, last);
+    last = done;
+    ++calls;
+  };
+  const MapFormat tall{MapConvention::st, 2048, 3000, {0, 0, 2048, 3000}};
+  write_backward_map(identity().view(), tall, 2, scratch / "map.exr", progress);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_GT(calls, 1);
 }
 
 TEST_F(DriverMaps, FoldsDoNotEnterTheRoundTrip) {
