@@ -24,7 +24,7 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
   hierarchy[top].pressure_jump = T(0);
   for (int l = top + 1; l < hierarchy.size(); ++l) {
     hierarchy[l].clamp_width = clamp_width_;
-    hierarchy[l].pressure_jump = T(kPressureJump);
+    hierarchy[l].pressure_jump = T(kPressureJump / hierarchy.traits().stiffest);
   }
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());

@@ -69,8 +69,11 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
     average(fine.mu, coarse.mu);
     average(fine.compliance, coarse.compliance);
   }
-  for (Level<T>& level : levels_)
-    if (level.mu) set_diagonal(level, meter);
+  for (Level<T>& level : levels_) {
+    if (!level.mu) continue;
+    set_diagonal(level, meter);
+    level.cuts.divide_jump(level.mu.view());
+  }
 }
 
 template <class T>

@@ -15,13 +15,26 @@ CutRows<T>::CutRows(const grid::CutCells& cuts)
       length_(cuts.length.begin(), cuts.length.end()) {
   for (const auto& weight : cuts.weight)
     for (const double w : weight) weight_.push_back(T(w));
+  divide_jump({});
+}
+
+template <class T>
+void CutRows<T>::divide_jump(const kernels::Plane<const T>& mu) {
+  std::vector<T> local(length_.size(), T(1));
+  if (mu)
+    for (std::size_t j = 0; j + 1 < row_begin_.size(); ++j)
+      for (int k = row_begin_[j]; k < row_begin_[j + 1]; ++k)
+        local[std::size_t(k)] = mu.at(column_[std::size_t(k)], int(j));
+  strength_.clear();
+  link_diagonal_.clear();
   for (std::size_t k = 0; k < length_.size(); ++k) {
     T diagonal = T(0);
     for (int l = link_begin_[k]; l < link_begin_[k + 1]; ++l) {
-      const T own = length_[k], other = length_[std::size_t(link_[std::size_t(l)])];
-      const T shorter = std::min(own, other);
-      strength_.push_back(shorter * shorter / (own * other));
-      diagonal += shorter * shorter / (own * own);
+      const std::size_t next = std::size_t(link_[std::size_t(l)]);
+      const T own = length_[k], other = length_[next], shorter = std::min(own, other);
+      const T softness = T(2) / (local[k] + local[next]);
+      strength_.push_back(softness * (shorter * shorter / (own * other)));
+      diagonal += softness * (shorter * shorter / (own * own));
     }
     link_diagonal_.push_back(diagonal);
   }

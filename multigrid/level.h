@@ -17,6 +17,7 @@ struct SceneTraits {
   bool pressure = true;        ///< kappa > 0 somewhere
   double jump = 0.0;           ///< qs of the equations: 0 for exact rows
   double jump_inside = 0.005;  ///< qs of the preconditioner
+  double stiffest = 1.0;       ///< largest mu of a cell: no cell's P is smoothed too much
 };
 
 /// The curve rows of a level in the solver's number type.
@@ -28,6 +29,9 @@ class CutRows {
   kernels::Cuts<T> view(T jump) const;
   int size() const { return int(length_.size()); }
   std::size_t bytes() const;
+  /// Takes the jump by the local stiffness, qs/mu with mu the mean over the two cells of a link:
+  /// else it opens gaps where mu is large, and where mu is small the null modes are back. Null: 1.
+  void divide_jump(const kernels::Plane<const T>& mu);
 
  private:
   std::vector<int> row_begin_, column_, link_begin_, link_;

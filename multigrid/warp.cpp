@@ -78,6 +78,12 @@ grid::Material capped(const grid::Material& material, SolveReport& report) {
   return out;
 }
 
+/// In units of the scene's mu: a curve must be hard where the membrane is stiffest, too.
+double largest_mu(const grid::Material& material) {
+  if (material.mu_cells.empty()) return 1.0;
+  return double(*std::ranges::max_element(material.mu_cells));
+}
+
 bool has_pressure(const grid::Material& material) {
   if (material.kappa_cells.empty()) return material.kappa > 0.0;
   return std::ranges::any_of(material.kappa_cells, [](float kappa) { return kappa > 0.0f; });
@@ -147,11 +153,15 @@ template <class T>
 void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution& solution) {
   SolveReport& report = solution.report;
   const Clock::time_point start = Clock::now();
-  const double most_weight = options.exact ? std::numeric_limits<double>::infinity() : kMostWeight;
+  const double most_weight = options.exact ? std::numeric_limits<double>::infinity()
+                                           : kMostWeight * largest_mu(problem.material);
   const grid::CutCells cuts = grid::cut(problem.curves, problem.lattice, most_weight);
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
-  const SceneTraits traits{.pressure = has_pressure(material), .jump = kJump, .jump_inside = kJump};
+  const SceneTraits traits{.pressure = has_pressure(material),
+                           .jump = kJump,
+                           .jump_inside = kJump,
+                           .stiffest = largest_mu(material)};
   grid::MemoryMeter meter;
   Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
   report.lattice_levels = hierarchy.size();

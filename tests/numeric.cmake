@@ -30,13 +30,15 @@ target_link_libraries(drumhead_conforming_oracle
 drumhead_test(NAME oracle_conforming_test
   SOURCES oracle_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
-foreach(name exact default nested restart)
+foreach(name exact default masks nested restart)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
-drumhead_test(NAME stability_degenerate_test
-  SOURCES stability_degenerate_test.cpp LINK drumhead::multigrid LABEL numeric)
+foreach(name degenerate memory)
+  drumhead_test(NAME stability_${name}_test
+    SOURCES stability_${name}_test.cpp LINK drumhead::multigrid LABEL numeric)
+endforeach()
 
 # It looks inside: the cycle is not part of the public headers.
 drumhead_test(NAME multigrid_allocation_test
