@@ -35,7 +35,8 @@ constexpr double kSolves = 0.75;
 // kModelError times what the linear solver left. Less clamping than that takes more cycles than it
 // saves steps (S4 kappa 10, 800²: 131 work units with theta growing at every full step, 62 so).
 constexpr double kModelError = 2.0, kSlow = 0.5;
-// After a shortened step linear systems are solved to this residual at least.
+// After a shortened step, or one that the norm of all equations did not show to be good, linear
+// systems are solved to this residual at least (else S1 kappa 10, 256², goes round in circles).
 constexpr double kCareful = 0.1;
 
 /// Files the steps of a run and decides when it ends.
@@ -319,7 +320,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
     if (judge.ends_with(step, precision())) return report;
-    if (step.step < 1.0) linear_options.content = std::min(linear_options.content, kCareful);
+    if (step.step < 1.0 || norm_ > kSolves * norm)
+      linear_options.content = std::min(linear_options.content, kCareful);
     if (step.step < 1.0 && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
     else if (step.step == 1.0 && norm_ > std::max(kSlow, kModelError * linear.residual) * norm)
