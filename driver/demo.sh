@@ -18,7 +18,7 @@ mkdir -p "$results"
 [ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
 
 for scene in "$@"; do
-  for needed in "$drumhead" "$examples/$scene.toml" "$examples/$scene.svg"; do
+  for needed in "$drumhead" "$examples/$scene.toml" "$examples/$scene"*.svg; do
     if [ ! -e "$results/$scene.png" ] || [ "$needed" -nt "$results/$scene.png" ]; then
       echo "Warping $examples/$scene.toml"
       rsvg-convert --output "$results/$scene-before.png" "$examples/$scene.svg"
