@@ -6,8 +6,22 @@
 
 #include "kernel_table.h"
 #include "parallel.h"
+#include "special_energy.h"
+#include "special_sweeps.h"
 
 namespace drumhead::kernels {
+namespace {
+
+/// Near nodes and special cells of rows j of H d, or of f − H d.
+template <class T>
+void overwrite(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<const T>& d,
+               const Unknowns<T>& out, int j) {
+  if (!m.special) return;
+  overwrite_near_row(*m.special, f, d, out.x.row(j), out.y.row(j), j);
+  if (d.p) overwrite_part_row(*m.special, f, d, out.p.row(j), out.listed, j);
+}
+
+}  // namespace
 
 template <class T>
 void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unknowns<T>& out) {
@@ -15,6 +29,7 @@ void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unkno
   for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
     if (j > 0) kernels.apply_nodes(m, nullptr, d, out.x.row(j), out.y.row(j), j);
     if (d.p) kernels.apply_cells(m, nullptr, d, out.p.row(j), j);
+    overwrite<T>(m, nullptr, d, out, j);
   });
 }
 
@@ -25,6 +40,7 @@ void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
   for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
     if (j > 0) kernels.residual_nodes(m, &f, d, r.x.row(j), r.y.row(j), j);
     if (d.p) kernels.residual_cells(m, &f, d, r.p.row(j), j);
+    overwrite<T>(m, &f, d, r, j);
   });
 }
 
@@ -36,10 +52,11 @@ int force(const Membrane<T>& m, const Unknowns<T>& f) {
     if (j > 0) kernels.force_nodes(m, f, j);
     if (!m.pressure) return;
     kernels.force_cells(m, f, j);
+    if (m.special) clear_special_force(m, f, j);
     const int count = kernels.inverted_cells(m, f, j);
     if (count > 0) inverted.fetch_add(count, std::memory_order_relaxed);
   });
-  return inverted;
+  return m.special ? inverted + special_force(m, f) : int(inverted);
 }
 
 template <class T>
@@ -49,7 +66,11 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   thread_local std::vector<EnergySums> of_row;  // of the calling thread, kept from call to call
   of_row.assign(static_cast<std::size_t>(rows), {});
   EnergySums* const at = of_row.data();
-  for_rows(0, rows, m.ux.columns, [&](int j) { kernels.energy(m, d, step, bool(d.x), at[j], j); });
+  for_rows(0, rows, m.ux.columns, [&](int j) {
+    const Columns special = m.special ? special_columns(m.special->cells(), j) : Columns{};
+    kernels.energy(m, d, step, bool(d.x), special, at[j], j);
+    if (m.special) add_special_energy(m, d, step, at[j], j);
+  });
   EnergySums sums;
   for (const EnergySums& row : of_row) {
     sums.elastic += row.elastic;

@@ -29,7 +29,7 @@ B edge_squares(L lane, B, const Corners<const T>& u, const Corners<const T>& d, 
 /// sums.
 template <class T>
 [[gnu::flatten]] void energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step,
-                                 bool moved, EnergySums& sums, int j) {
+                                 bool moved, const Columns& left_out, EnergySums& sums, int j) {
   constexpr int kChunk = 256;
   T elastic[kChunk], volume[kChunk], merit[kChunk], inverted[kChunk];
   Sixteen total[4];
@@ -76,6 +76,12 @@ template <class T>
         lane.store(finite * half_area * change * change / larger(c0, B(T(1e-30))),
                    volume + (k - begin));
       });
+      for (const int i : left_out) {
+        const int k = i >> 1;
+        if ((i & 1) != parity || k < begin || k >= end) continue;
+        elastic[k - begin] = inverted[k - begin] = T(0);
+        if (p) volume[k - begin] = merit[k - begin] = T(0);
+      }
       total[0].add(elastic, end - begin);
       total[3].add(inverted, end - begin);
       if (!p) continue;

@@ -25,7 +25,8 @@ struct KernelTable {
   void (*force_nodes)(const Membrane<T>&, const Fields& out, int j);
   void (*force_cells)(const Membrane<T>&, const Fields& out, int j);
   int (*inverted_cells)(const Membrane<T>&, const Fields& force, int j);
-  void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved, EnergySums&, int j);
+  void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved,
+                 const Columns& left_out, EnergySums&, int j);
 
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
   void (*start_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int j);

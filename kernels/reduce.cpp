@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/reduce.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "kernel_table.h"
@@ -58,13 +59,25 @@ void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y) {
   combine(a, x.x, b, y.x);
   combine(a, x.y, b, y.y);
   combine(a, x.p, b, y.p);
+  const int count = x.p && y.p ? std::min(x.listed_count, y.listed_count) : 0;
+  for (int k = 0; k < count; ++k)
+    y.listed[k] = a * x.listed[k] + (b == T(0) ? T(0) : b * y.listed[k]);
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                            \
-  template double dot(const Plane<const T>&, const Plane<const T>&);       \
-  template double dot(const Unknowns<const T>&, const Unknowns<const T>&); \
-  template double largest(const Plane<const T>&);                          \
-  template void combine(T, const Plane<const T>&, T, const Plane<T>&);     \
+template <class T>
+double dot_listed(const Unknowns<const T>& a, const Unknowns<const T>& b) {
+  double sum = 0.0;
+  const int count = a.p && b.p ? std::min(a.listed_count, b.listed_count) : 0;
+  for (int k = 0; k < count; ++k) sum += double(a.listed[k]) * double(b.listed[k]);
+  return sum;
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                   \
+  template double dot(const Plane<const T>&, const Plane<const T>&);              \
+  template double dot(const Unknowns<const T>&, const Unknowns<const T>&);        \
+  template double dot_listed(const Unknowns<const T>&, const Unknowns<const T>&); \
+  template double largest(const Plane<const T>&);                                 \
+  template void combine(T, const Plane<const T>&, T, const Plane<T>&);            \
   template void combine(T, const Unknowns<const T>&, T, const Unknowns<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

@@ -7,25 +7,33 @@
 
 #include "kernel_table.h"
 #include "parallel.h"
+#include "special_sweeps.h"
 
 namespace drumhead::kernels {
 
 template <class T>
 RowScratch<T>::RowScratch(int columns, int threads)
     : odd_(((columns + 1) / 2 + 15) / 16 * 16),
-      storage_(std::size_t(threads) * 10 * 2 * std::size_t(odd_)),
+      storage_(std::size_t(threads) * (10 + 4) * 2 * std::size_t(odd_)),
       rows_(std::size_t(threads)) {
   T* at = storage_.data();
   for (Rows& rows : rows_) {
     for (T*& row : rows.x) row = std::exchange(at, at + 2 * odd_);
     for (T*& row : rows.y) row = std::exchange(at, at + 2 * odd_);
     for (T*& row : rows.p) row = std::exchange(at, at + 2 * odd_);
+    rows.kept = std::exchange(at, at + 8 * odd_);
   }
 }
 
 template <class T>
 void RowScratch<T>::forget() {
   for (Rows& rows : rows_) std::fill_n(rows.held, 4, -1);
+}
+
+template <class T>
+T* RowScratch<T>::parts(int count) {
+  if (parts_.size() < std::size_t(count)) parts_.resize(std::size_t(count));
+  return parts_.data();
 }
 
 namespace {
@@ -45,6 +53,22 @@ void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
   kernels.residual_nodes(membrane, &f, d, x, y, j);
   const int last = d.x.columns - 1;
   for (const SplitRow<T>& row : {x, y}) row.half[0][0] = row.half[last & 1][last >> 1] = T(0);
+  if (membrane.special) overwrite_near_row(*membrane.special, &f, d, x, y, j);
+}
+
+/// Residual of cell row j: 0 at special cells, that of their parts in `parts`.
+template <class T>
+void residual_cell_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
+                       const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& p,
+                       T* parts, int j) {
+  kernels.residual_cells(membrane, &f, d, p, j);
+  if (membrane.special) overwrite_part_row(*membrane.special, &f, d, p, parts, j);
+}
+
+/// Room for the residuals of all parts of a level's special cells.
+template <class T>
+T* part_residuals(const Membrane<T>& membrane, RowScratch<T>& scratch) {
+  return membrane.special ? scratch.parts(membrane.special->cells().parts()) : nullptr;
 }
 
 /// Fills coarse rows from the residual of a level, called with ascending rows of each thread's
@@ -53,7 +77,11 @@ template <class T>
 class Restriction {
  public:
   Restriction(const LevelSystem<T>& level, const Unknowns<T>& coarse, RowScratch<T>& scratch)
-      : level_(level), coarse_(coarse), scratch_(scratch), kernels_(table<T>()) {
+      : level_(level),
+        coarse_(coarse),
+        scratch_(scratch),
+        parts_(part_residuals(level.membrane, scratch)),
+        kernels_(table<T>()) {
     scratch.forget();
   }
 
@@ -70,19 +98,30 @@ class Restriction {
       restrict_component(rows.x, below, centre, above, has_above, coarse_.x, coarse_row);
       restrict_component(rows.y, below, centre, above, has_above, coarse_.y, coarse_row);
     }
-    if (!level_.d.p) return;
-    const int first = 2 * coarse_row;
-    const bool pair = first + 1 < ny;
-    for (int n = 0; n <= int(pair); ++n)
-      kernels_.residual_cells(level_.membrane, &f_, d_, split(rows.p[n]), first + n);
-    const SplitRow<const T> upper = as_const(split(rows.p[1]));
-    kernels_.sum_cells(as_const(split(rows.p[0])), pair ? &upper : nullptr, level_.d.p.columns,
-                       coarse_.p, coarse_row);
+    if (level_.d.p) restrict_cells(rows, coarse_row);
+    if (level_.coarse_special) restrict_parts(rows, coarse_row);
   }
 
  private:
   SplitRow<T> split(T* row) const { return {{row, row + scratch_.odd()}}; }
   static SplitRow<const T> as_const(const SplitRow<T>& row) { return {{row.half[0], row.half[1]}}; }
+
+  void restrict_cells(const typename RowScratch<T>::Rows& rows, int coarse_row) const {
+    const int first = 2 * coarse_row;
+    const bool pair = first + 1 < level_.d.p.rows;
+    for (int n = 0; n <= int(pair); ++n)
+      residual_cell_row(kernels_, level_.membrane, f_, d_, split(rows.p[n]), parts_, first + n);
+    const SplitRow<const T> upper = as_const(split(rows.p[1]));
+    kernels_.sum_cells(as_const(split(rows.p[0])), pair ? &upper : nullptr, level_.d.p.columns,
+                       coarse_.p, coarse_row);
+  }
+
+  void restrict_parts(const typename RowScratch<T>::Rows& rows, int coarse_row) const {
+    clear_without_equation(*level_.coarse_special, coarse_, coarse_row);
+    if (!level_.d.p) return;
+    for (int j = 2 * coarse_row; j < std::min(2 * coarse_row + 2, level_.d.p.rows); ++j)
+      add_restricted_parts<T>(*level_.transfer, parts_, split(rows.p[j & 1]), coarse_, j);
+  }
 
   /// Index of the buffer that holds residual row j, computing it if it is not there.
   int hold(typename RowScratch<T>::Rows& rows, int j) {
@@ -99,20 +138,28 @@ class Restriction {
     const SplitRow<const T> upper = as_const(split(buffers[above]));
     kernels_.restrict_nodes(as_const(split(buffers[below])), as_const(split(buffers[centre])),
                             has_above ? &upper : nullptr, level_.d.x.columns, out, coarse_row);
+    if (!level_.coarse_special) return;
+    const int middle = 2 * coarse_row;
+    add_restricted_nodes(*level_.transfer, as_const(split(buffers[below])), middle - 1, out,
+                         coarse_row);
+    add_restricted_nodes(*level_.transfer, as_const(split(buffers[centre])), middle, out,
+                         coarse_row);
+    if (has_above) add_restricted_nodes(*level_.transfer, upper, middle + 1, out, coarse_row);
   }
 
   const LevelSystem<T>& level_;
   const Unknowns<T>& coarse_;
   RowScratch<T>& scratch_;
+  T* parts_;
   const KernelTable<T>& kernels_;
   const Unknowns<const T> f_ = level_.f, d_ = level_.d;
 };
 
 /// The sweeps of one relaxation in order.
-enum class Sweep { clear, prolong, start, nodes, volume, cuts, nothing, restriction };
+enum class Sweep { clear, prolong, start, nodes, near, volume, cuts, nothing, restriction };
 struct Stage {
   Sweep sweep;
-  int colour = 0;  ///< of nodes, or parity of the cell rows
+  int colour = 0;  ///< of nodes, or parity of the rows
   bool reverse = false;
 };
 
@@ -122,7 +169,7 @@ struct StageList {
   void add(Stage stage) { at[std::size_t(count++)] = stage; }
 };
 
-StageList list_stages(const RelaxStages& stages, bool prolong, bool volume, bool cuts,
+StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool volume, bool cuts,
                       bool restriction) {
   StageList list;
   if (stages.from_zero) list.add({Sweep::clear});
@@ -133,6 +180,10 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool volume, bool
   if (stages.sweeps != Sweeps::none)
     for (int colour : {first, 1 - first})
       list.add({start && colour == 0 ? Sweep::start : Sweep::nodes, colour});
+  // Near nodes see all eight neighbours: those of a row follow one another, rows of one parity do
+  // not see each other.
+  if (near && stages.sweeps != Sweeps::none)
+    for (int parity : {0, 1}) list.add({Sweep::near, parity});
   volume = volume && stages.sweeps == Sweeps::all;
   cuts = cuts && stages.sweeps == Sweeps::all;
   for (bool reverse : {false, true}) {
@@ -152,50 +203,98 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool volume, bool
   return list;
 }
 
+/// The sweeps on row j.
+template <class T>
+class Relaxation {
+ public:
+  explicit Relaxation(const LevelSystem<T>& level) : level_(level), kernels_(table<T>()) {}
+
+  void clear(int j) const {
+    clear_row(d_.x, j);
+    clear_row(d_.y, j);
+    if (!d_.p) return;
+    clear_row(d_.p, j);
+    if (special_) clear_part_row(special_->cells(), d_.listed, j);
+  }
+  void prolong(const Unknowns<const T>& coarse, int j) const {
+    if (j > 0) {
+      kernels_.add_prolonged_nodes(coarse.x, d_.x, j);
+      kernels_.add_prolonged_nodes(coarse.y, d_.y, j);
+    }
+    if (d_.p) kernels_.prolong_cells(coarse.p, d_.p, j);
+    if (special_) finish_prolongation(*special_, *level_.transfer, coarse, d_, j);
+  }
+  void start(T* kept, int j) const {
+    keeping_near(0, kept, j, [&] { kernels_.start_nodes(level_.membrane, f_, d_, j); });
+  }
+  void nodes(int colour, T* kept, int j) const {
+    keeping_near(colour, kept, j,
+                 [&] { kernels_.relax_nodes(level_.membrane, f_, d_, colour, j); });
+  }
+  void near(int j) const { relax_near_row(*special_, f_, d_, j); }
+  void volume(int parity, bool reverse, T* kept, int j) const {
+    auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, j); };
+    if (!special_) return sweep();
+    keep_special_row(*special_, d_, parity, j, kept, sweep);
+    relax_part_row(*special_, level_.membrane, f_, d_, parity, reverse, j);
+  }
+  void cuts(bool reverse, int j) const {
+    relax_cuts_row(level_.membrane, level_.cuts, level_.fq, level_.dq, d_, level_.f, reverse, j);
+  }
+
+ private:
+  template <class F>
+  void keeping_near(int colour, T* kept, int j, F&& sweep) const {
+    if (special_)
+      keep_near_row(*special_, d_, (j + colour) & 1, j, kept, sweep);
+    else
+      sweep();
+  }
+
+  const LevelSystem<T>& level_;
+  const KernelTable<T>& kernels_;
+  const SpecialRows<T>* special_ = level_.membrane.special;
+  const Unknowns<T>& d_ = level_.d;
+  const Unknowns<const T> f_ = level_.f;
+};
+
 }  // namespace
 
 template <class T>
 void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
-  const KernelTable<T>& kernels = table<T>();
-  const Unknowns<T>& d = level.d;
-  const Unknowns<const T> f = level.f;
-  const int ny = d.x.rows - 1;
-  const StageList list = list_stages(stages, coarse_d != nullptr, bool(d.p), level.cuts.count > 0,
-                                     coarse_f != nullptr);
+  const int ny = level.d.x.rows - 1;
+  const StageList list = list_stages(stages, coarse_d != nullptr, level.membrane.special != nullptr,
+                                     bool(level.d.p), level.cuts.count > 0, coarse_f != nullptr);
   const Unknowns<T> nowhere{};
   Restriction<T> restriction(level, coarse_f ? *coarse_f : nowhere, scratch);
-
-  skewed_sweeps(ny, list.count, d.x.columns, [&](int s, int j, int thread) {
+  const Relaxation<T> relaxation(level);
+  skewed_sweeps(ny, list.count, level.d.x.columns, [&](int s, int j, int thread) {
     const Stage& stage = list.at[std::size_t(s)];
+    T* kept = scratch.rows(thread).kept;
     switch (stage.sweep) {
       case Sweep::clear:
-        clear_row(d.x, j);
-        clear_row(d.y, j);
-        if (d.p) clear_row(d.p, j);
+        relaxation.clear(j);
         break;
       case Sweep::prolong:
-        if (j > 0) {
-          kernels.add_prolonged_nodes(coarse_d->x, d.x, j);
-          kernels.add_prolonged_nodes(coarse_d->y, d.y, j);
-        }
-        if (d.p) kernels.prolong_cells(coarse_d->p, d.p, j);
+        relaxation.prolong(*coarse_d, j);
         break;
       case Sweep::start:
-        if (j > 0) kernels.start_nodes(level.membrane, f, d, j);
+        if (j > 0) relaxation.start(kept, j);
         break;
       case Sweep::nodes:
-        if (j > 0) kernels.relax_nodes(level.membrane, f, d, stage.colour, j);
+        if (j > 0) relaxation.nodes(stage.colour, kept, j);
+        break;
+      case Sweep::near:
+        if (j > 0 && (j & 1) == stage.colour) relaxation.near(j);
         break;
       case Sweep::volume:
         if ((j & 1) != stage.colour) break;
-        kernels.relax_volume(level.membrane, f, d, int(stage.reverse), j);
-        kernels.relax_volume(level.membrane, f, d, int(!stage.reverse), j);
+        relaxation.volume(int(stage.reverse), stage.reverse, kept, j);
+        relaxation.volume(int(!stage.reverse), stage.reverse, kept, j);
         break;
       case Sweep::cuts:
-        if ((j & 1) == stage.colour)
-          relax_cuts_row(level.membrane, level.cuts, level.fq, level.dq, d, level.f, stage.reverse,
-                         j);
+        if ((j & 1) == stage.colour) relaxation.cuts(stage.reverse, j);
         break;
       case Sweep::nothing:
         break;
@@ -214,6 +313,7 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   const double volume_weight =
       1.0 / (double(level.membrane.spacing) * double(level.membrane.spacing));
   scratch.forget();
+  T* parts = part_residuals(level.membrane, scratch);
   thread_local std::vector<double> of_row;  // of the calling thread, kept from call to call
   of_row.resize(static_cast<std::size_t>(rows));
   double* const at = of_row.data();
@@ -230,8 +330,9 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
       sum = square(buffer.x[0], d.x.columns) + square(buffer.y[0], d.x.columns);
     }
     if (d.p) {
-      kernels.residual_cells(level.membrane, &f, d, split(buffer.p[0]), j);
+      residual_cell_row(kernels, level.membrane, f, d, split(buffer.p[0]), parts, j);
       sum += volume_weight * square(buffer.p[0], d.p.columns);
+      if (parts) sum += volume_weight * part_squares(level.membrane.special->cells(), parts, j);
     }
     at[j] = sum;
   });

@@ -16,6 +16,9 @@ constexpr int kBottomCells = 4;
 // kappa = 0 in some cells of a scene with pressures: compliance that makes P negligible.
 constexpr double kMostCompliance = 1e6;
 
+// Every part has a pressure of its own.
+constexpr grid::ConformOptions kConform{.least_area = 0.0};
+
 bool coarsest(int nx, int ny) { return std::max(nx, ny) <= kBottomCells || std::min(nx, ny) <= 3; }
 
 }  // namespace
@@ -89,11 +92,17 @@ void Hierarchy<T>::set_diagonal(Level<T>& level, grid::MemoryMeter& meter) {
 template <class T>
 void Hierarchy<T>::restrict_state(int top) {
   for (int l = top; l + 1 < size(); ++l) {
-    const Level<T>& fine = (*this)[l];
-    Level<T>& coarse = (*this)[l + 1];
+    Level<T>&fine = (*this)[l], &coarse = (*this)[l + 1];
+    if (fine.conforming && fine.pressure) set_part_means<T>(*fine.conforming, fine.pressure.view());
     kernels::inject_nodes<T>(fine.ux.view(), coarse.ux.view());
     kernels::inject_nodes<T>(fine.uy.view(), coarse.uy.view());
     if (fine.pressure) kernels::mean_cells<T>(fine.pressure.view(), coarse.pressure.view());
+    if (fine.conforming) {
+      set_known<T>(*coarse.conforming, coarse.ux.view(), coarse.uy.view());
+      if (fine.pressure)
+        restrict_parts<T>(*fine.conforming, fine.pressure.view(), fine.spacing * fine.spacing,
+                          *coarse.conforming);
+    }
     coarse.clamp_centre = fine.clamp_centre;
     coarse.clamp_width = fine.clamp_width;
   }
@@ -106,11 +115,63 @@ void Hierarchy<T>::prolong_state(int l) {
   kernels::prolong_nodes<T>(coarse.ux.view(), fine.ux.view());
   kernels::prolong_nodes<T>(coarse.uy.view(), fine.uy.view());
   if (fine.pressure) kernels::interpolate_cells<T>(coarse.pressure.view(), fine.pressure.view());
+  if (fine.conforming) {
+    const kernels::Plane<const T> cx = coarse.ux.view(), cy = coarse.uy.view();
+    prolong_special_nodes<T>(*coarse.conforming, cx, cy, *fine.conforming, fine.ux.view(),
+                             fine.uy.view());
+    set_known<T>(*fine.conforming, fine.ux.view(), fine.uy.view());
+    if (fine.pressure)
+      prolong_parts<T>(*coarse.conforming, coarse.pressure.view(), *fine.conforming,
+                       fine.pressure.view());
+    if (fine.pressure) set_part_means<T>(*fine.conforming, fine.pressure.view());
+  }
   for (std::size_t k = 0; k < fine.to_coarse.parent.size(); ++k) {
     const int parent = fine.to_coarse.parent[k];
     for (std::size_t c = 0; c < 2; ++c)
       fine.q[2 * k + c] =
           parent < 0 ? T(0) : fine.to_coarse.share[k] * coarse.q[2 * std::size_t(parent) + c];
+  }
+}
+
+template <class T>
+void Hierarchy<T>::set_wanted(int l, std::vector<grid::Point> wanted) {
+  for (int m = 0; m < l; ++m) {
+    const CutTransfer<T>& transfer = (*this)[m].to_coarse;
+    std::vector<grid::Point> coarse((*this)[m + 1].wanted.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      if (transfer.parent[k] >= 0) {
+        grid::Point& parent = coarse[std::size_t(transfer.parent[k])];
+        parent = parent + double(transfer.share[k]) * wanted[k];
+      }
+    wanted = std::move(coarse);
+  }
+  (*this)[l].wanted = std::move(wanted);
+}
+
+template <class T>
+void Hierarchy<T>::conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
+                           grid::MemoryMeter& meter) {
+  grid::Lattice on_level = lattice;
+  for (int l = 0; l < size(); ++l) {
+    (*this)[l].conform(grid::conform(curves, on_level, kConform), meter);
+    on_level = grid::coarsened(on_level);
+    if (l > 0)
+      (*this)[l - 1].conforming->to_coarse =
+          special_transfer<T>((*this)[l - 1].conforming->geometry, (*this)[l].conforming->geometry);
+  }
+}
+
+template <class T>
+void Hierarchy<T>::retarget(const std::vector<grid::CurvePair>& curves,
+                            const grid::Lattice& lattice, int top) {
+  grid::Lattice on_level = lattice;
+  for (int l = 0; l < size(); ++l) {
+    if (l >= top) {
+      Level<T>& level = (*this)[l];
+      level.conforming->retarget(grid::conform(curves, on_level, kConform), level.spacing);
+      set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
+    }
+    on_level = grid::coarsened(on_level);
   }
 }
 

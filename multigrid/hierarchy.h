@@ -18,6 +18,15 @@ class Hierarchy {
   Hierarchy(const grid::Lattice& lattice, const grid::Material& material,
             const grid::CutCells& cuts, const SceneTraits& traits, grid::MemoryMeter& meter);
 
+  /// Makes all levels conform to curves. `lattice`: the finest level's.
+  void conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
+               grid::MemoryMeter& meter);
+  /// Wanted displacements of level l from those of the finest level's cuts, averaged as the cuts.
+  void set_wanted(int l, std::vector<grid::Point> wanted);
+  /// Other targets of the same sources on level `top` and all coarser ones, into the state too.
+  void retarget(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice, int top);
+  bool conforming() const { return levels_.front().conforming != nullptr; }
+
   int size() const { return int(levels_.size()); }
   Level<T>& operator[](int l) { return levels_[std::size_t(l)]; }
   const Level<T>& operator[](int l) const { return levels_[std::size_t(l)]; }
@@ -34,7 +43,7 @@ class Hierarchy {
   /// Hands the state of level `top` and its clamp down to all coarser levels.
   void restrict_state(int top);
   /// State of level l := interpolation of that of level l + 1: x̂ bilinear, P between cell centres,
-  /// q by arc length.
+  /// q by arc length; in special cells x̂ by triangles, P by parts.
   void prolong_state(int l);
 
  private:

@@ -26,7 +26,11 @@ class Gcr {
         level_(hierarchy[top]),
         pressure_(pressure),
         meter_(meter),
-        cycle_(hierarchy, top, pressure, Cycle<T>::kDefinite) {}
+        cycle_(hierarchy, top, pressure, Cycle<T>::kDefinite) {
+    if (!level_.conforming) return;
+    special_ = level_.conforming->rows;  // the cycle has them with its own clamp
+    special_.linearise(membrane(), T(0));
+  }
 
   /// Goes on from the level's d, dq, whose right-hand side was f − Wᵀ dq; `start`: norm of that
   /// side.
@@ -38,8 +42,15 @@ class Gcr {
     double norm2 = 0.0;
   };
   Vector<T> make_vector() {
-    return {grid::UnknownFields<T>(level_.nx, level_.ny, pressure_, meter_),
-            std::vector<T>(level_.q.size(), T(0))};
+    Vector<T> vector{grid::UnknownFields<T>(level_.nx, level_.ny, pressure_, meter_),
+                     std::vector<T>(level_.q.size(), T(0))};
+    if (pressure_) vector.fields.listed.assign(level_.d.listed.size(), T(0));
+    return vector;
+  }
+  kernels::Membrane<T> membrane() const {
+    kernels::Membrane<T> m = pressure_ ? level_.membrane() : level_.harmonic();
+    if (level_.conforming) m.special = &special_;
+    return m;
   }
   void apply(const Vector<T>& d, Vector<T>& out);
   double dot(const Vector<T>& a, const Vector<T>& b) const;
@@ -51,14 +62,14 @@ class Gcr {
   bool pressure_;
   grid::MemoryMeter& meter_;
   Cycle<T> cycle_;
+  kernels::SpecialRows<T> special_;  ///< of the equations, where the lattice conforms to curves
   std::vector<Direction> directions_;
 };
 
 template <class T>
 void Gcr<T>::apply(const Vector<T>& d, Vector<T>& out) {
   const kernels::Cuts<T> cuts = level_.cuts.view(T(hierarchy_.traits().jump));
-  kernels::apply_hessian<T>(pressure_ ? level_.membrane() : level_.harmonic(), d.fields.view(),
-                            out.fields.view());
+  kernels::apply_hessian<T>(membrane(), d.fields.view(), out.fields.view());
   kernels::add_curve_force<T>(cuts, d.q.data(), T(-1), out.fields.view());
   kernels::apply_cuts<T>(cuts, d.fields.view(), d.q.data(), out.q.data());
 }
@@ -68,8 +79,9 @@ void Gcr<T>::apply(const Vector<T>& d, Vector<T>& out) {
 template <class T>
 double Gcr<T>::dot(const Vector<T>& a, const Vector<T>& b) const {
   const auto av = a.fields.view(), bv = b.fields.view();
+  const double volume = kernels::dot<T>(av.p, bv.p) + kernels::dot_listed<T>(av, bv);
   double sum = kernels::dot<T>(av.x, bv.x) + kernels::dot<T>(av.y, bv.y) +
-               kernels::dot<T>(av.p, bv.p) / double(level_.spacing * level_.spacing);
+               volume / double(level_.spacing * level_.spacing);
   for (std::size_t k = 0; k < a.q.size(); ++k) sum += double(a.q[k]) * double(b.q[k]);
   return sum;
 }

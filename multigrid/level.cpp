@@ -94,7 +94,21 @@ kernels::Membrane<T> Level<T>::harmonic() const {
   m.spacing = spacing;
   m.mu = {T(1), mu.view()};
   m.inverse_diagonal = inverse_diagonal.view();
+  if (conforming) {
+    m.special = &conforming->rows;
+    m.listed = conforming->pressure.data();
+  }
   return m;
+}
+
+template <class T>
+void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
+  conforming = std::make_unique<ConformingLevel<T>>(std::move(cells), spacing);
+  conforming->rows = kernels::SpecialRows<T>(conforming->cells, harmonic());
+  d.listed.assign(conforming->pressure.size(), T(0));
+  f.listed = d.listed;
+  set_known<T>(*conforming, ux.view(), uy.view());
+  meter.add(conforming->bytes());
 }
 
 template class CutRows<float>;

@@ -3,12 +3,15 @@
 // One level of the hierarchy: its lattice, material, curve rows, state and the linear system of the
 // current Newton step. mu is 1 throughout: pressures, weights and energies are in units of the
 // scene's mu.
+#include <memory>
 #include <vector>
 
 #include <drumhead/grid/cut_cells.h>
 #include <drumhead/grid/field.h>
 #include <drumhead/grid/material.h>
 #include <drumhead/kernels/relax.h>
+
+#include "conforming.h"
 
 namespace drumhead::multigrid {
 
@@ -59,6 +62,9 @@ struct Level {
   CutTransfer<T> to_coarse;
   std::vector<grid::Point> wanted;  ///< b, in finest cells
 
+  /// Where the lattice conforms to the curves; there are no curve rows then.
+  std::unique_ptr<ConformingLevel<T>> conforming;
+
   // State: of the solution where Newton runs, restricted from it on coarser levels.
   grid::Field<T> ux, uy, pressure;
   std::vector<T> q;
@@ -75,6 +81,8 @@ struct Level {
   kernels::Membrane<T> membrane() const;
   /// The membrane without pressures, for the harmonic start.
   kernels::Membrane<T> harmonic() const;
+  /// Makes the level conform to curves.
+  void conform(grid::ConformingCells cells, grid::MemoryMeter& meter);
   std::size_t nodes() const { return std::size_t(nx + 1) * std::size_t(ny + 1); }
 };
 

@@ -85,35 +85,18 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 
 namespace {
 
-/// Wanted displacements of level l from those of the finest level, as coarsening averages them.
-template <class T>
-void set_wanted(Hierarchy<T>& hierarchy, int l, std::vector<grid::Point> wanted) {
-  for (int m = 0; m < l; ++m) {
-    const CutTransfer<T>& transfer = hierarchy[m].to_coarse;
-    std::vector<grid::Point> coarse(hierarchy[m + 1].wanted.size());
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      if (transfer.parent[k] >= 0) {
-        grid::Point& parent = coarse[std::size_t(transfer.parent[k])];
-        parent = parent + double(transfer.share[k]) * wanted[k];
-      }
-    wanted = std::move(coarse);
-  }
-  hierarchy[l].wanted = std::move(wanted);
-}
-
 /// The first state on the start level: harmonic, and for large rotations on along the load path.
 template <class T>
 void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
                 const NewtonOptions& newton_options, Newton<T>& newton, ClampSchedule& clamp) {
   LinearOptions harmonic = newton_options.linear;
   harmonic.content = harmonic.reduction = kHarmonic;
-  if (!options.partway) {
+  if (!options.set_targets) {
     newton.harmonic(harmonic);
     return;
   }
-  const std::vector<grid::Point> whole = hierarchy[start].wanted;
   for (int n = 1; n < kPathSteps; ++n) {
-    set_wanted(hierarchy, start, options.partway(double(n) / kPathSteps));
+    options.set_targets(start, double(n) / kPathSteps);
     if (n == 1) newton.harmonic(harmonic);
     NewtonOptions part = newton_options;
     part.most_steps = kStepsPerPathStep;
@@ -121,7 +104,7 @@ void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options
     clamp = {};
     newton.run(part, clamp, {});
   }
-  hierarchy[start].wanted = whole;
+  options.set_targets(start, 1.0);
   clamp = {};
 }
 
@@ -147,11 +130,11 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     newton_options.most_steps = kLevelSteps;
     // Two steps on the coarser levels measure the contraction that the finest may then count on.
     newton_options.least_steps = l > 0 ? 2 : 1;
-    newton_options.share_of_discretisation = kShare;
+    newton_options.share_of_change = kShare * options.discretisation_share;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
     if (l == start) {
       newton_options.most_steps = kStartSteps;
-      newton_options.share_of_discretisation = 0.0;
+      newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = 0.01 * double(level.spacing);
       find_start(hierarchy, start, options, newton_options, newton, clamp);
     } else {
@@ -159,7 +142,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     }
     if (l == 0 && options.tolerance_cells > 0.0) {
       newton_options.most_steps = kStartSteps;
-      newton_options.share_of_discretisation = 0.0;
+      newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = options.tolerance_cells;
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
@@ -181,8 +164,10 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.algebraic_max_px = done.error_max * cell_px;
     const bool estimated = l != start;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    report.discretisation_rms_px = estimated ? kErrorOfChange * done.change_rms * cell_px : unknown;
-    report.discretisation_max_px = estimated ? kErrorOfChange * done.change_max * cell_px : unknown;
+    report.discretisation_rms_px =
+        estimated ? options.discretisation_share * done.change_rms * cell_px : unknown;
+    report.discretisation_max_px =
+        estimated ? options.discretisation_share * done.change_max * cell_px : unknown;
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
     if (report.status == Status::not_finite) return;
   }

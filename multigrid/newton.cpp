@@ -93,9 +93,8 @@ class Judge {
 
   bool small(const NewtonStep& step, double rounding) const {
     double wanted = options_.tolerance_rms;
-    if (options_.share_of_discretisation > 0.0)
-      wanted = std::max({wanted, rounding,
-                         options_.share_of_discretisation * kErrorOfChange * report_.change_rms});
+    if (options_.share_of_change > 0.0)
+      wanted = std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
     return report_.error_rms <= wanted &&
            (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
   }
@@ -191,7 +190,9 @@ double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
   const auto f = level_.f.view();
   double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y);
-  if (pressure) sum += kernels::dot<T>(f.p, f.p) / double(level_.spacing * level_.spacing);
+  if (pressure)
+    sum += (kernels::dot<T>(f.p, f.p) + kernels::dot_listed<T>(f, f)) /
+           double(level_.spacing * level_.spacing);
   for (const T value : level_.fq) sum += double(value) * double(value);
   return std::sqrt(sum);
 }
@@ -240,6 +241,8 @@ void Newton<T>::update(double step, bool pressure) {
   kernels::combine<T>(T(step), kernels::Plane<const T>(d.y), T(1), level_.uy.view());
   if (pressure)
     kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
+  for (std::size_t k = 0; pressure && k < level_.d.listed.size(); ++k)
+    level_.conforming->pressure[k] += T(step) * level_.d.listed[k];
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
 }
 
@@ -307,7 +310,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const auto d = level_.d.view();
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
     const double rms = std::sqrt(squares / double(level_.nodes()));
-    if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p))) {
+    if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p) +
+                       kernels::dot_listed<T>(d, d))) {
       report.status = Status::not_finite;
       return report;
     }

@@ -21,9 +21,9 @@ struct NewtonOptions {
   double tolerance_rms = 0.0;  ///< stop when the error left is estimated below this, finest cells
   double tolerance_max =
       0.0;  ///< and, if > 0, when no node moved further than this in the last step
-  /// Besides: stop when the error left is under this share of the level's estimated discretisation
-  /// error, kErrorOfChange times the RMS of all that Newton changed. 0: not a criterion.
-  double share_of_discretisation = 0.0;
+  /// Besides: stop when the error left is under this share of the RMS of all that Newton changed on
+  /// the level, of which the discretisation error is a fixed share in turn. 0: not a criterion.
+  double share_of_change = 0.0;
   int least_steps = 1;
   int most_steps = 8;
   /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor

@@ -17,6 +17,7 @@
 #include "load_path.h"
 #include "nested.h"
 #include "restart.h"
+#include "split_cells.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -39,6 +40,19 @@ constexpr double kNotableGap = 1.0;
 // The q-jump of the default path and of the preconditioner.
 constexpr double kJump = 0.005;
 
+void check_conforming(const WarpProblem& problem, const SolverOptions& options) {
+  for (const grid::CurvePair& curve : problem.curves)
+    if (!std::isinf(curve.weight))
+      throw std::invalid_argument("curve '" + curve.name +
+                                  "': weight = " + std::to_string(curve.weight) +
+                                  ": must be inf with conforming curves");
+  if (options.exact)
+    throw std::invalid_argument("exact rows belong to averaged curves, not to conforming ones");
+  if (options.solver != Solver::gcr)
+    throw std::invalid_argument(std::string("solver ") + name(options.solver) +
+                                ": conforming curves need gcr");
+}
+
 void check(const WarpProblem& problem, const SolverOptions& options) {
   const grid::Lattice& lattice = problem.lattice;
   if (lattice.nx < 1 || lattice.ny < 1)
@@ -58,6 +72,7 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                   std::to_string(other.nx) + " × " + std::to_string(other.ny) +
                                   " cells: must be on the problem's own");
   }
+  if (options.curves == CurveMethod::conforming) check_conforming(problem, options);
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 0");
@@ -120,6 +135,15 @@ void export_state(const Hierarchy<T>& hierarchy, Solution& solution) {
 }
 
 template <class T>
+void export_split_cells(const Hierarchy<T>& hierarchy, Solution& solution) {
+  const ConformingLevel<T>& level = *hierarchy[0].conforming;
+  std::vector<grid::Point> displacement;
+  for (const grid::HeldNode& node : level.geometry.curve_node)
+    displacement.push_back(solution.lattice.cell_px * node.wanted);
+  set_split_cells(level.geometry, displacement, solution);
+}
+
+template <class T>
 EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {
   const Level<T>& level = hierarchy[0];
   const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), {}, T(0));
@@ -155,7 +179,9 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const Clock::time_point start = Clock::now();
   const double most_weight = options.exact ? std::numeric_limits<double>::infinity()
                                            : kMostWeight * largest_mu(problem.material);
-  const grid::CutCells cuts = grid::cut(problem.curves, problem.lattice, most_weight);
+  const bool conforming = options.curves == CurveMethod::conforming;
+  const grid::CutCells cuts = grid::cut(
+      conforming ? std::vector<grid::CurvePair>{} : problem.curves, problem.lattice, most_weight);
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
   const SceneTraits traits{.pressure = has_pressure(material),
@@ -164,6 +190,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
                            .stiffest = largest_mu(material)};
   grid::MemoryMeter meter;
   Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
+  if (conforming) hierarchy.conform(problem.curves, problem.lattice, meter);
   report.lattice_levels = hierarchy.size();
   report.cut_seconds = seconds_since(start);
 
@@ -172,13 +199,19 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
                        .exact = options.exact,
                        .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
                        .smallest_feature = smallest_feature(problem),
-                       .partway = {},
+                       .discretisation_share = conforming ? 1.0 / 3.0 : kErrorOfChange,
+                       .set_targets = {},
                        .progress = options.progress};
   if (largest_turn(problem.curves) > kLoadPathTurn)
-    nested.partway = [&](double t) {
-      return grid::cut(partway(problem.curves, t), problem.lattice, most_weight).wanted;
+    nested.set_targets = [&](int start, double t) {
+      const std::vector<grid::CurvePair> curves =
+          t < 1.0 ? partway(problem.curves, t) : problem.curves;
+      if (conforming)
+        hierarchy.retarget(curves, problem.lattice, start);
+      else
+        hierarchy.set_wanted(start, grid::cut(curves, problem.lattice, most_weight).wanted);
     };
-  if (!options.start || options.exact ||
+  if (!options.start || options.exact || conforming ||
       !continue_iteration(hierarchy, cuts, *options.start, nested, meter, report))
     nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
   report.solve_seconds = seconds_since(solving);
@@ -187,6 +220,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.energy = energies(hierarchy, cuts);
   export_state(hierarchy, solution);
   solution.forces = curve_forces(hierarchy, cuts);
+  if (conforming) export_split_cells(hierarchy, solution);
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }
@@ -228,6 +262,16 @@ std::optional<Solver> solver_named(std::string_view wanted) {
   for (const Solver solver : {Solver::gcr, Solver::kaczmarz, Solver::coloured_kaczmarz,
                               Solver::minres, Solver::minres_multigrid})
     if (wanted == name(solver)) return solver;
+  return std::nullopt;
+}
+
+const char* name(CurveMethod method) {
+  return method == CurveMethod::averaged ? "averaged" : "conforming";
+}
+
+std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
+  for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming})
+    if (wanted == name(method)) return method;
   return std::nullopt;
 }
 

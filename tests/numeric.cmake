@@ -39,6 +39,8 @@ foreach(name degenerate memory)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp LINK drumhead::multigrid LABEL numeric)
 endforeach()
+drumhead_test(NAME stability_conforming_test
+  SOURCES stability_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
 # It looks inside: the cycle is not part of the public headers.
 drumhead_test(NAME multigrid_allocation_test

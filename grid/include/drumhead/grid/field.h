@@ -3,8 +3,10 @@
 // A field that owns its memory: one number per node or cell in the split rows of kernels/views.h,
 // aligned to 64 bytes and zero at first. Its bytes are counted by a meter, so that a solver can say
 // what it took.
+#include <algorithm>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include <drumhead/kernels/views.h>
 
@@ -57,21 +59,28 @@ class Field {
   MemoryMeter* meter_ = nullptr;
 };
 
-/// x, y per node and, if asked for, p per cell of an nx × ny lattice.
+/// x, y per node and, if asked for, p per cell of an nx × ny lattice; `listed`: one per part of its
+/// special cells.
 template <class T>
 struct UnknownFields {
   Field<T> x, y, p;
+  std::vector<T> listed;
   UnknownFields() = default;
   UnknownFields(int nx, int ny, bool pressure, MemoryMeter& meter)
       : x(nx + 1, ny + 1, meter), y(nx + 1, ny + 1, meter) {
     if (pressure) p = Field<T>(nx, ny, meter);
   }
-  kernels::Unknowns<T> view() { return {x.view(), y.view(), p.view()}; }
-  kernels::Unknowns<const T> view() const { return {x.view(), y.view(), p.view()}; }
+  kernels::Unknowns<T> view() {
+    return {x.view(), y.view(), p.view(), listed.data(), int(listed.size())};
+  }
+  kernels::Unknowns<const T> view() const {
+    return {x.view(), y.view(), p.view(), listed.data(), int(listed.size())};
+  }
   void clear() {
     x.clear();
     y.clear();
     p.clear();
+    std::ranges::fill(listed, T(0));
   }
 };
 

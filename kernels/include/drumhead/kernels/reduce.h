@@ -12,6 +12,9 @@ double dot(const Plane<const T>& a, const Plane<const T>& b);
 /// x, y and (where present) p.
 template <class T>
 double dot(const Unknowns<const T>& a, const Unknowns<const T>& b);
+/// The pressures of parts of special cells, where pressures are present.
+template <class T>
+double dot_listed(const Unknowns<const T>& a, const Unknowns<const T>& b);
 
 /// max |a|; NaN if any value is NaN.
 template <class T>
@@ -20,6 +23,7 @@ double largest(const Plane<const T>& a);
 /// y = a x + b y; with b = 0, y is not read.
 template <class T>
 void combine(T a, const Plane<const T>& x, T b, const Plane<T>& y);
+/// x, y, p and the list.
 template <class T>
 void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y);
 

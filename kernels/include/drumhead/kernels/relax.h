@@ -2,15 +2,16 @@
 #pragma once
 // The relaxation of one level, fused with the transfers around it into one skewed pass over the
 // rows:
-//   [clear d or add the prolonged coarse correction] → nodes red → nodes black → volume rows, 2×2
-//   colours → curve rows → curve rows and volume rows in reverse → [residual, restricted to the
-//   coarser level].
+//   [clear d or add the prolonged coarse correction] → nodes red → nodes black → near nodes of
+//   even, then of odd rows → volume rows, 2×2 colours → curve rows → curve rows and volume rows in
+//   reverse → [residual, restricted to the coarser level].
 // Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag
 // K inner product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014,
 // Eq. 4).
 #include <vector>
 
 #include <drumhead/kernels/cuts.h>
+#include <drumhead/kernels/special.h>
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -24,6 +25,9 @@ struct LevelSystem {
   Unknowns<T> d, f;
   T* dq = nullptr;        ///< two per cut
   const T* fq = nullptr;  ///< right-hand side of the curve rows
+  /// With special cells: to the coarser level, and that level's rows.
+  const SpecialTransfer<T>* transfer = nullptr;
+  const SpecialRows<T>* coarse_special = nullptr;
 };
 
 /// Row buffers for the fused restriction, one set a thread; make once, reuse.
@@ -35,16 +39,19 @@ class RowScratch {
     T* x[4];
     T* y[4];
     T* p[2];
+    T* kept;      ///< values of near nodes while a vectorised sweep passes over them
     int held[4];  ///< which residual row x[r], y[r] hold, −1: none
   };
   Rows& rows(int thread) { return rows_[std::size_t(thread)]; }
   std::ptrdiff_t odd() const { return odd_; }
   void forget();
-  std::size_t bytes() const { return storage_.size() * sizeof(T); }
+  /// One value per part of special cells.
+  T* parts(int count);
+  std::size_t bytes() const { return (storage_.size() + parts_.size()) * sizeof(T); }
 
  private:
   std::ptrdiff_t odd_;
-  std::vector<T> storage_;
+  std::vector<T> storage_, parts_;
   std::vector<Rows> rows_;
 };
 

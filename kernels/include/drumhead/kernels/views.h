@@ -37,12 +37,23 @@ struct Plane {
 /// Columns of one parity among `columns`.
 constexpr int half_count(int columns, int parity) { return (columns + 1 - parity) / 2; }
 
+/// Some columns of a row, ascending.
+struct Columns {
+  const int *first = nullptr, *last = nullptr;  ///< [first, last)
+  const int* begin() const { return first; }
+  const int* end() const { return last; }
+};
+
 /// What a Newton system has per node (x, y) and per cell (p; null where no pressures exist): a
 /// correction, a right-hand side or a residual. (nx+1) × (ny+1) nodes, nx × ny cells.
 template <class T>
 struct Unknowns {
   Plane<T> x, y, p;
-  operator Unknowns<const T>() const requires(!std::is_const_v<T>) { return {x, y, p}; }
+  T* listed = nullptr;  ///< one per part of the special cells (see special.h)
+  int listed_count = 0;
+  operator Unknowns<const T>() const requires(!std::is_const_v<T>) {
+    return {x, y, p, listed, listed_count};
+  }
 };
 
 /// A material value, constant or per cell.
@@ -51,6 +62,9 @@ struct Coefficient {
   T value = T(1);
   Plane<const T> cells;  ///< null: `value` everywhere
 };
+
+template <class T>
+class SpecialRows;
 
 /// The membrane linearised at a state: all that its operators read (Eq. 5, 6, 7 of Setaluri et al.
 /// 2014). Displacements u = x̂ − X of every level are in cells of the finest lattice; a level's own
@@ -73,6 +87,10 @@ struct Membrane {
   /// equations are solved; on coarser levels it stands for the nodes in the middle of the edges
   /// that they lack, without which volume and curve rows contradict one another there.
   T pressure_jump = T(0);
+  /// Cells that conform to curves (see special.h), null: all cells are regular. Their rows,
+  /// linearised at this state (force and energy do without that), and the pressures of their parts.
+  const SpecialRows<T>* special = nullptr;
+  const T* listed = nullptr;
 };
 
 /// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then

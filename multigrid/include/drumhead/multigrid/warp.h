@@ -41,15 +41,26 @@ enum class Solver {
   kaczmarz,
   coloured_kaczmarz,  ///< V-cycles of over-relaxed Gauss–Seidel Kaczmarz on all rows in colours
   minres,             ///< MINRES on the whole system, rows balanced
-  minres_multigrid    ///< MINRES, preconditioned by a multigrid cycle on x̂ and diagonals on P and q
+  minres_multigrid  ///< MINRES, preconditioned by a multigrid cycle on x̂ and diagonals on P and q
 };
 const char* name(Solver solver);
 /// Nothing for a name that is none of these.
 std::optional<Solver> solver_named(std::string_view name);
 
+/// How the lattice meets the curves.
+enum class CurveMethod {
+  averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
+  conforming  ///< cells divided along the curves (grid/conforming.h): second order, hard curves
+};
+const char* name(CurveMethod method);
+/// Nothing for a name that is none of these.
+std::optional<CurveMethod> curve_method_named(std::string_view name);
+
 struct Solution;
 
 struct SolverOptions {
+  /// Conforming curves are hard, not exact, and need Solver::gcr.
+  CurveMethod curves = CurveMethod::averaged;
   Solver solver = Solver::gcr;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;

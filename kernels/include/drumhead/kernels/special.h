@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Special cells: those that a curve passes through or moves a corner of, when the lattice conforms
+// to the curves. Such a cell is divided along the curve into parts, each a polygon of at most eight
+// vertices cut into triangles, and instead of Eq. 6 and 5 of Setaluri et al. 2014 it has
+//   Σ_triangles mu A/2 |F|² + Σ_parts [P (A J − A) − A P²/(2 kappa)]
+// with F constant on a triangle and A J the area of the deformed polygon: one pressure per side of
+// the curve (one per cell is first order again, one per triangle locks). Nodes on a hard curve are
+// *known*: their correction is 0. Storage is proportional to the length of the curves.
+//
+// Every node of a special cell, and every known node, is *near*. The vectorised kernels pass over
+// special cells and near nodes as if they were regular, and what they write there is overwritten (a
+// relaxation: restored) by loops over the lists of this header, which hold whole rows of the
+// operator. A plane's value at a special cell is therefore not part of any system; corrections keep
+// 0 there.
+#include <cstddef>
+#include <vector>
+
+#include <drumhead/kernels/views.h>
+
+namespace drumhead::kernels {
+
+/// Vertices of triangles and parts: 0…3 are the corners 00, 10, 01, 11 of the cell, 4 + n is
+/// crossing node n of the level.
+constexpr int kFirstCrossing = 4;
+
+template <class T>
+struct Triangle {
+  int vertex[3] = {};
+  T area = T(0);             ///< at rest, > 0, in finest cells squared
+  T gx[3] = {}, gy[3] = {};  ///< gradients of the barycentric coordinates
+};
+
+/// A vertex of a part's boundary.
+template <class T>
+struct PartVertex {
+  int vertex = 0;
+  T x = T(0), y = T(0);  ///< rest position from the cell's corner 00, in finest cells
+};
+
+/// A lattice node or crossing node whose place the curve prescribes.
+template <class T>
+struct KnownNode {
+  int column = 0;
+  T ux = T(0), uy = T(0);  ///< target − rest position, in finest cells
+};
+
+/// The special cells of one level, sorted by row, then column.
+template <class T>
+struct SpecialCells {
+  std::vector<int> row_begin;  ///< ny + 1: cells of row j are [row_begin[j], row_begin[j+1])
+  std::vector<int> column;
+  std::vector<int> part_begin;      ///< cells + 1
+  std::vector<int> triangle_begin;  ///< cells + 1
+  std::vector<Triangle<T>> triangle;
+  std::vector<int> vertex_begin;      ///< parts + 1
+  std::vector<PartVertex<T>> vertex;  ///< in the sense 00, 10, 11, 01, which makes areas positive
+  std::vector<T> area;                ///< of each part
+  /// Parts of other cells on the same side of the curves, which share a piece of a cell's side:
+  /// those of part p are [neighbour_begin[p], neighbour_begin[p+1]).
+  std::vector<int> neighbour_begin, neighbour;
+  std::vector<int> known_begin;  ///< ny + 2: known lattice nodes of row j, sorted by column
+  std::vector<KnownNode<T>> known;
+  std::vector<T> crossing_ux, crossing_uy;  ///< displacement of the crossing nodes
+
+  int size() const { return int(column.size()); }
+  int parts() const { return int(area.size()); }
+};
+
+/// Row of a near node: stencil over its 3 × 3 nodes (west to east, south to north), the pressures
+/// of its regular cells (sw, se, nw, ne; 0 for special ones) and of the parts it belongs to.
+template <class T>
+struct NearRow {
+  int column = 0;
+  int coupling_begin = 0;  ///< into SpecialRows::coupling, up to the next row's
+  int regular = 15;        ///< bit q set: cell q of sw, se, nw, ne is regular
+  T inverse = T(0);        ///< 1/K_ii; 0: the node is known
+  T k[9] = {}, g[9] = {};  ///< (H d)_x = k·d_x + g·d_y, (H d)_y = k·d_y − g·d_x
+  T bx[4] = {}, by[4] = {};
+};
+template <class T>
+struct PartCoupling {
+  int part = 0;
+  T bx = T(0), by = T(0);
+};
+/// Row of a part: Σ bx d_x + by d_y over the cell's corners − compliance dP − Σ_neighbours jump_n
+/// (dP − dP_n); 0 at known corners.
+template <class T>
+struct PartRow {
+  T bx[4] = {}, by[4] = {};
+  T compliance = T(0);  ///< A/kappa
+  T jumps = T(0);       ///< Σ jump_n
+};
+
+/// The operator's rows at near nodes and parts, linearised at a state.
+template <class T>
+class SpecialRows {
+ public:
+  SpecialRows() = default;
+  /// The rows of `cells` (which must outlive this) with the stiffness of the membrane's lattice and
+  /// mu; its state is not read.
+  SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& membrane);
+
+  /// Sets what depends on the membrane's state, its pressures and their clamp. `jump`: strength of
+  /// the jumps in shares of the smaller Σ |B_i|²/K_ii of the two parts.
+  void linearise(const Membrane<T>& membrane, T jump);
+
+  const SpecialCells<T>& cells() const { return *cells_; }
+  /// Near nodes of node row j, sorted by column: [near_begin(j), near_begin(j + 1)).
+  int near_begin(int j) const { return near_begin_[std::size_t(j)]; }
+  /// Known nodes of node row j that are a corner of a regular cell.
+  Columns loose(int j) const {
+    return {loose_.data() + loose_begin_[std::size_t(j)],
+            loose_.data() + loose_begin_[std::size_t(j) + 1]};
+  }
+  const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
+  const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
+  /// Strength of the jump at entry k of SpecialCells::neighbour.
+  T jump(int k) const { return jump_[std::size_t(k)]; }
+  const PartCoupling<T>& coupling(int k) const { return coupling_[std::size_t(k)]; }
+  /// Near node at corner c of special cell n; −1: on the fixed boundary.
+  int corner(int n, int c) const { return corner_[4 * std::size_t(n) + std::size_t(c)]; }
+  /// The same, −1 for known nodes too.
+  int unknown_corner(int n, int c) const {
+    const int node = corner(n, c);
+    return node >= 0 && near(node).inverse != T(0) ? node : -1;
+  }
+  std::size_t bytes() const;
+
+ private:
+  void list_near_nodes(int columns, int rows);
+  void list_couplings();
+  void add_stiffness(const Membrane<T>& membrane);
+  void linearise_regular(const Membrane<T>& membrane);
+  void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
+  void set_jumps(T strength);
+
+  const SpecialCells<T>* cells_ = nullptr;
+  std::vector<int> near_begin_, corner_, loose_begin_, loose_;
+  std::vector<int> slot_;         // of every part vertex: index into coupling_, −1: none
+  std::vector<NearRow<T>> near_;  // one more than there are, which ends the couplings of the last
+  std::vector<PartRow<T>> part_;
+  std::vector<T> jump_;
+  std::vector<PartCoupling<T>> coupling_;
+};
+
+/// How a level with special cells hangs together with the next coarser one, beyond the transfers of
+/// regular lattices. Corrections go up by these weights, residuals down by the adjoint.
+template <class T>
+struct SpecialTransfer {
+  /// A pressure below a coarse part, or of a part: constant prolongation. An index ≥ 0 is a part,
+  /// ~index the column of a regular cell.
+  struct Pair {
+    int fine = 0, coarse = 0;
+  };
+  /// A node that lies in a special coarse cell: what its weights in the triangles of that cell are
+  /// beyond the bilinear ones. `column`, `row`: the coarse cell; weights of its corners 00, 10, 01,
+  /// 11.
+  struct Node {
+    int fine = 0, column = 0, row = 0;
+    T weight[4] = {};
+  };
+  std::vector<int> pair_begin;  ///< fine ny + 1; the coarse row is half the fine one
+  std::vector<Pair> pair;
+  std::vector<int> node_begin;  ///< fine ny + 2
+  std::vector<Node> node;
+};
+
+}  // namespace drumhead::kernels

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "special_energy.h"
+
+#include <algorithm>
+
+#include "special_state.h"
+
+namespace drumhead::kernels {
+namespace {
+
+/// Displacement gradient of a triangle: F − 1.
+template <class T>
+struct Gradient {
+  T xx = T(0), xy = T(0), yx = T(0), yy = T(0);
+};
+template <class T, class F>
+Gradient<T> gradient(const Triangle<T>& triangle, F&& displacement) {
+  Gradient<T> g;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vector2<T> u = displacement(triangle.vertex[a]);
+    g.xx += u.x * triangle.gx[a];
+    g.xy += u.x * triangle.gy[a];
+    g.yx += u.y * triangle.gx[a];
+    g.yy += u.y * triangle.gy[a];
+  }
+  return g;
+}
+
+/// A (J − 1) of a part: twice it is Σ X_k × w_k+1 + w_k × X_k+1 + w_k × w_k+1 along its boundary.
+template <class T, class F>
+T volume_change(const SpecialCells<T>& cells, int part, F&& displacement) {
+  const std::size_t begin = std::size_t(cells.vertex_begin[std::size_t(part)]),
+                    end = std::size_t(cells.vertex_begin[std::size_t(part) + 1]);
+  T twice = T(0);
+  const PartVertex<T>* last = &cells.vertex[end - 1];
+  Vector2<T> u = displacement(last->vertex);
+  for (std::size_t v = begin; v < end; ++v) {
+    const PartVertex<T>& next = cells.vertex[v];
+    const Vector2<T> w = displacement(next.vertex);
+    twice +=
+        (last->x * w.y - last->y * w.x) + (u.x * next.y - u.y * next.x) + (u.x * w.y - u.y * w.x);
+    last = &next;
+    u = w;
+  }
+  return T(0.5) * twice;
+}
+
+/// What regular cell q of sw, se, nw, ne around node (i, j) adds to −∂E/∂x̂ there.
+template <class T>
+Vector2<T> regular_force(const Membrane<T>& m, int i, int j, int q) {
+  const int dx = q & 1 ? 1 : -1, dy = q & 2 ? 1 : -1;  // towards the cell
+  const int ci = dx > 0 ? i : i - 1, cj = dy > 0 ? j : j - 1;
+  const T half_mu = T(0.5) * mu_at(m, ci, cj);
+  auto difference = [&](const Plane<const T>& u, int di, int dj) {
+    return u.at(i + di, j + dj) - u.at(i, j);
+  };
+  const T h = m.spacing;
+  const Vector2<T> along{h * T(dx) + difference(m.ux, dx, 0), difference(m.uy, dx, 0)};
+  const Vector2<T> up{difference(m.ux, 0, dy), h * T(dy) + difference(m.uy, 0, dy)};
+  Vector2<T> force{half_mu * (along.x + up.x), half_mu * (along.y + up.y)};
+  if (m.pressure) {
+    // A J = ½ (next − previous) rotated · x̂ + …; the neighbour along x follows at corners 00, 11.
+    const T half = T(dx * dy) * T(0.5) * m.pressure.at(ci, cj);
+    force.x -= half * (along.y - up.y);
+    force.y += half * (along.x - up.x);
+  }
+  return force;
+}
+
+template <class T>
+void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i, int j) {
+  const SpecialRows<T>& rows = *m.special;
+  const SpecialCells<T>& cells = rows.cells();
+  const T mu = mu_at(m, i, j);
+  for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
+       ++t) {
+    const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
+    const Gradient<T> g =
+        gradient(triangle, [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); });
+    const T scale = mu * triangle.area;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int c = triangle.vertex[a];
+      if (c >= kFirstCrossing || rows.unknown_corner(n, c) < 0) continue;
+      const T gx = triangle.gx[a], gy = triangle.gy[a];
+      f.x.at(i + (c & 1), j + (c >> 1)) -= scale * (gx + (g.xx * gx + g.xy * gy));
+      f.y.at(i + (c & 1), j + (c >> 1)) -= scale * (gy + (g.yx * gx + g.yy * gy));
+    }
+  }
+}
+
+/// True if the part's area is negative.
+template <class T>
+bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, int i, int j) {
+  const SpecialRows<T>& rows = *m.special;
+  const SpecialCells<T>& cells = rows.cells();
+  auto displacement = [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); };
+  const int begin = cells.vertex_begin[std::size_t(p)],
+            end = cells.vertex_begin[std::size_t(p) + 1];
+  const T half = T(0.5) * m.listed[p];
+  for (int v = begin; v < end; ++v) {
+    const int c = cells.vertex[std::size_t(v)].vertex;
+    if (c >= kFirstCrossing || rows.unknown_corner(n, c) < 0) continue;
+    const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
+    const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
+    const Vector2<T> to = displacement(next.vertex), from = displacement(previous.vertex);
+    f.x.at(i + (c & 1), j + (c >> 1)) -= half * ((next.y - previous.y) + (to.y - from.y));
+    f.y.at(i + (c & 1), j + (c >> 1)) += half * ((next.x - previous.x) + (to.x - from.x));
+  }
+  const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, displacement);
+  f.listed[p] = area * compliance_at(m, i, j) * m.listed[p] - change;
+  return change < -area;
+}
+
+}  // namespace
+
+template <class T>
+void clear_special_force(const Membrane<T>& m, const Unknowns<T>& f, int j) {
+  for (const int i : special_columns(m.special->cells(), j))
+    f.p.at(i, j) = m.spacing * m.spacing * compliance_at(m, i, j) * m.pressure.at(i, j);
+}
+
+template <class T>
+int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
+  const SpecialRows<T>& rows = *m.special;
+  int inverted = 0;
+  for (int j = 1; j + 1 < m.ux.rows; ++j)
+    for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
+      const NearRow<T>& row = rows.near(n);
+      Vector2<T> sum{T(0), T(0)};
+      for (int q = 0; q < 4 && row.inverse != T(0); ++q) {
+        if (!(row.regular >> q & 1)) continue;
+        const Vector2<T> force = regular_force(m, row.column, j, q);
+        sum = {sum.x + force.x, sum.y + force.y};
+      }
+      f.x.at(row.column, j) = sum.x;
+      f.y.at(row.column, j) = sum.y;
+    }
+  for_special(rows.cells(), [&](int n, int i, int j) {
+    add_triangle_force(m, f, n, i, j);
+    if (!m.pressure) return;
+    f.p.at(i, j) = T(0);
+    bool any = false;
+    for_parts(rows.cells(), n, [&](int p) { any |= add_part_force(m, f, n, p, i, j); });
+    inverted += any;
+  });
+  return inverted;
+}
+
+template <class T>
+void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step, EnergySums& sums,
+                        int j) {
+  const SpecialCells<T>& cells = m.special->cells();
+  const double soft = 0.01 / double(m.mu.value);  // as in energy_row
+  for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
+    const int i = cells.column[std::size_t(n)];
+    auto displacement = [&](int vertex) {
+      Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, vertex);
+      if (d.x && vertex < kFirstCrossing) {
+        u.x += step * d.x.at(i + (vertex & 1), j + (vertex >> 1));
+        u.y += step * d.y.at(i + (vertex & 1), j + (vertex >> 1));
+      }
+      return u;
+    };
+    for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
+         ++t) {
+      const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
+      const Gradient<T> g = gradient(triangle, displacement);
+      const T xx = T(1) + g.xx, yy = T(1) + g.yy;
+      sums.elastic += 0.5 * double(mu_at(m, i, j)) * double(triangle.area) *
+                      double((xx * xx + yy * yy) + (g.xy * g.xy + g.yx * g.yx));
+    }
+    const double c0 = double(compliance_at(m, i, j));
+    bool inverted = false;
+    for_parts(cells, n, [&](int p) {
+      const double area = double(cells.area[std::size_t(p)]);
+      const double change = double(volume_change(cells, p, displacement)) / area;
+      inverted = inverted || change < -1.0;
+      if (!m.pressure) return;
+      const double pressure = double(m.listed[p]) + (d.listed ? double(d.listed[p]) : 0.0);
+      const double c = change - pressure * c0;
+      sums.volume_merit += c0 < soft ? area * (pressure * c + 0.5 * c * c / soft)
+                                     : 0.5 * area * change * change / c0;
+      if (c0 > 0.0) sums.volume += 0.5 * area * change * change / c0;
+    });
+    sums.inverted_cells += inverted;
+  }
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                                  \
+  template int special_force(const Membrane<T>&, const Unknowns<T>&);                            \
+  template void clear_special_force(const Membrane<T>&, const Unknowns<T>&, int);                \
+  template void add_special_energy(const Membrane<T>&, const Unknowns<const T>&, T, EnergySums&, \
+                                   int);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::kernels

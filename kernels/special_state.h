@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the loops over special cells share: the state at their vertices and the visits of their
+// parts.
+#include <algorithm>
+
+#include <drumhead/kernels/special.h>
+
+namespace drumhead::kernels {
+
+template <class T>
+struct Vector2 {
+  T x, y;
+};
+
+/// Displacement of a vertex of special cell (i, j): `x`, `y` at lattice nodes.
+template <class T>
+Vector2<T> at_vertex(const SpecialCells<T>& cells, const Plane<const T>& x, const Plane<const T>& y,
+                     int i, int j, int vertex) {
+  if (vertex >= kFirstCrossing) {
+    const std::size_t n = std::size_t(vertex - kFirstCrossing);
+    return {cells.crossing_ux[n], cells.crossing_uy[n]};
+  }
+  return {x.at(i + (vertex & 1), j + (vertex >> 1)), y.at(i + (vertex & 1), j + (vertex >> 1))};
+}
+
+/// visit(cell, i, j) for every special cell.
+template <class T, class F>
+void for_special(const SpecialCells<T>& cells, F&& visit) {
+  for (int j = 0; j + 1 < int(cells.row_begin.size()); ++j)
+    for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
+      visit(n, cells.column[std::size_t(n)], j);
+}
+/// visit(part) for the parts of a special cell.
+template <class T, class F>
+void for_parts(const SpecialCells<T>& cells, int cell, F&& visit) {
+  const std::size_t n = std::size_t(cell);
+  for (int p = cells.part_begin[n]; p < cells.part_begin[n + 1]; ++p) visit(p);
+}
+
+template <class T>
+T mu_at(const Membrane<T>& m, int i, int j) {
+  return m.mu.cells ? m.mu.cells.at(i, j) : m.mu.value;
+}
+template <class T>
+T compliance_at(const Membrane<T>& m, int i, int j) {
+  return m.compliance.cells ? m.compliance.cells.at(i, j) : m.compliance.value;
+}
+
+/// P_H: what of a pressure the Hessian sees.
+template <class T>
+T clamped(const Membrane<T>& m, T pressure, int i, int j) {
+  const T bound = m.clamp_width * mu_at(m, i, j);
+  return std::clamp(pressure - m.clamp_centre, -bound, bound);
+}
+
+}  // namespace drumhead::kernels

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "conforming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "conforming_visits.h"
+
+namespace drumhead::multigrid {
+namespace {
+
+template <class T>
+void add_cell(const grid::ConformingCells& from, int c, int i, int j, T spacing,
+              kernels::SpecialCells<T>& to) {
+  const double h = double(spacing);
+  to.column.push_back(i);
+  for_parts(from, c, [&](int p) {
+    for_triangles(from, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
+      kernels::Triangle<T>& out = to.triangle.emplace_back();
+      out.area = T(triangle.area * h * h);
+      for (std::size_t a = 0; a < 3; ++a) {
+        out.vertex[a] = code[a];
+        out.gx[a] = T(triangle.gradient[a].x / h);
+        out.gy[a] = T(triangle.gradient[a].y / h);
+      }
+    });
+    for (int n = from.part_node_begin[std::size_t(p)]; n < from.part_node_begin[std::size_t(p) + 1];
+         ++n) {
+      const int code = from.part_node[std::size_t(n)];
+      const grid::Point rest = from.rest(c, j, code) - grid::Point{double(i), double(j)};
+      to.vertex.push_back({code, T(rest.x * h), T(rest.y * h)});
+    }
+    to.vertex_begin.push_back(int(to.vertex.size()));
+    to.area.push_back(T(from.part_area[std::size_t(p)] * h * h));
+  });
+  to.part_begin.push_back(int(to.area.size()));
+  to.triangle_begin.push_back(int(to.triangle.size()));
+}
+
+/// Parts of two cells with a common piece of a side. A piece between two held nodes may be a
+/// curve's and joins nothing.
+template <class T>
+void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>& to) {
+  struct Piece {
+    std::int64_t a, b;
+    int part;
+    auto operator<=>(const Piece&) const = default;
+  };
+  std::vector<Piece> pieces;
+  const std::int64_t nodes = std::int64_t(from.nx + 1) * (from.ny + 1);
+  for_special(from, [&](int c, int i, int j) {
+    auto number = [&](int code) {
+      if (code >= kernels::kFirstCrossing) return nodes + code - kernels::kFirstCrossing;
+      return std::int64_t(j + (code >> 1)) * (from.nx + 1) + i + (code & 1);
+    };
+    auto held = [&](int code) {
+      return code >= kernels::kFirstCrossing ||
+             from.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
+    };
+    for_parts(from, c, [&](int p) {
+      const int first = from.part_node_begin[std::size_t(p)],
+                end = from.part_node_begin[std::size_t(p) + 1];
+      for (int n = first; n < end; ++n) {
+        const int a = from.part_node[std::size_t(n)],
+                  b = from.part_node[std::size_t(n + 1 < end ? n + 1 : first)];
+        if (held(a) && held(b)) continue;
+        pieces.push_back({std::min(number(a), number(b)), std::max(number(a), number(b)), p});
+      }
+    });
+  });
+  std::ranges::sort(pieces);
+  std::vector<std::array<int, 2>> pairs;
+  for (std::size_t n = 0; n + 1 < pieces.size(); ++n)
+    if (pieces[n].a == pieces[n + 1].a && pieces[n].b == pieces[n + 1].b) {
+      pairs.push_back({pieces[n].part, pieces[n + 1].part});
+      pairs.push_back({pieces[n + 1].part, pieces[n].part});
+    }
+  std::ranges::sort(pairs);
+  to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
+  for (const auto& [part, other] : pairs) {
+    ++to.neighbour_begin[std::size_t(part) + 1];
+    to.neighbour.push_back(other);
+  }
+  for (std::size_t p = 1; p < to.neighbour_begin.size(); ++p)
+    to.neighbour_begin[p] += to.neighbour_begin[p - 1];
+}
+
+template <class T>
+void set_targets(const grid::ConformingCells& from, T spacing, kernels::SpecialCells<T>& to) {
+  const double h = double(spacing);
+  to.known.clear();
+  to.known_begin.assign(1, 0);
+  for (int j = 0; j <= from.ny; ++j) {
+    for (int n = from.node_begin[std::size_t(j)]; n < from.node_begin[std::size_t(j) + 1]; ++n) {
+      const grid::HeldNode& node = from.node[std::size_t(n)];
+      to.known.push_back(
+          {from.node_column[std::size_t(n)], T(node.wanted.x * h), T(node.wanted.y * h)});
+    }
+    to.known_begin.push_back(int(to.known.size()));
+  }
+  to.crossing_ux.clear();
+  to.crossing_uy.clear();
+  for (const grid::HeldNode& node : from.curve_node) {
+    to.crossing_ux.push_back(T(node.wanted.x * h));
+    to.crossing_uy.push_back(T(node.wanted.y * h));
+  }
+}
+
+template <class T>
+kernels::SpecialCells<T> special_cells(const grid::ConformingCells& from, T spacing) {
+  kernels::SpecialCells<T> to;
+  to.row_begin = from.cell_begin;
+  to.part_begin = to.triangle_begin = to.vertex_begin = {0};
+  for_special(from, [&](int c, int i, int j) { add_cell(from, c, i, j, spacing, to); });
+  set_targets(from, spacing, to);
+  list_neighbours(from, to);
+  return to;
+}
+
+}  // namespace
+
+template <class T>
+ConformingLevel<T>::ConformingLevel(grid::ConformingCells from, T spacing)
+    : geometry(std::move(from)),
+      cells(special_cells(geometry, spacing)),
+      pressure(cells.area.size(), T(0)) {}
+
+template <class T>
+void ConformingLevel<T>::retarget(const grid::ConformingCells& other, T spacing) {
+  set_targets(other, spacing, cells);
+}
+
+template <class T>
+std::size_t ConformingLevel<T>::bytes() const {
+  return rows.bytes() + cells.triangle.size() * sizeof(kernels::Triangle<T>) +
+         cells.vertex.size() * sizeof(kernels::PartVertex<T>) +
+         to_coarse.pair.size() * sizeof(typename kernels::SpecialTransfer<T>::Pair) +
+         to_coarse.node.size() * sizeof(typename kernels::SpecialTransfer<T>::Node) +
+         4 * pressure.size() * sizeof(T);
+}
+
+template <class T>
+void set_known(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
+               const kernels::Plane<T>& uy) {
+  const kernels::SpecialCells<T>& cells = level.cells;
+  for (int j = 0; j < ux.rows; ++j)
+    for (int k = cells.known_begin[std::size_t(j)]; k < cells.known_begin[std::size_t(j) + 1];
+         ++k) {
+      const kernels::KnownNode<T>& node = cells.known[std::size_t(k)];
+      ux.at(node.column, j) = node.ux;
+      uy.at(node.column, j) = node.uy;
+    }
+}
+
+template <class T>
+void set_part_means(const ConformingLevel<T>& level, const kernels::Plane<T>& pressure) {
+  for_special(level.geometry, [&](int c, int i, int j) {
+    T sum = T(0), area = T(0);
+    for_parts(level.geometry, c, [&](int p) {
+      sum += level.cells.area[std::size_t(p)] * level.pressure[std::size_t(p)];
+      area += level.cells.area[std::size_t(p)];
+    });
+    pressure.at(i, j) = sum / area;
+  });
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                \
+  template struct ConformingLevel<T>;                                          \
+  template void set_known(const ConformingLevel<T>&, const kernels::Plane<T>&, \
+                          const kernels::Plane<T>&);                           \
+  template void set_part_means(const ConformingLevel<T>&, const kernels::Plane<T>&);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::multigrid

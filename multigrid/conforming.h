@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A level whose lattice conforms to the curves (grid/conforming.h): its special cells for the
+// kernels, the pressures of their parts, and how state and corrections pass to and from the next
+// coarser level. Every level's cells are built from the curves themselves. Nodes on hard curves are
+// known; corrections of nodes pass by index (snapped nodes move by a quarter cell at most), states
+// are evaluated at the fine node's rest position in the coarse triangles.
+#include <vector>
+
+#include <drumhead/grid/conforming.h>
+#include <drumhead/grid/field.h>
+#include <drumhead/kernels/special.h>
+
+namespace drumhead::multigrid {
+
+template <class T>
+struct ConformingLevel {
+  grid::ConformingCells geometry;
+  kernels::SpecialCells<T> cells;
+  kernels::SpecialRows<T> rows;
+  kernels::SpecialTransfer<T> to_coarse;  ///< empty on the coarsest level
+  std::vector<T> pressure;                ///< state: P per part
+
+  /// `spacing`: side of a cell of the level in finest cells.
+  ConformingLevel(grid::ConformingCells cells, T spacing);
+  ConformingLevel(const ConformingLevel&) = delete;
+  ConformingLevel& operator=(const ConformingLevel&) = delete;
+
+  /// Takes the targets of other curves with the same sources.
+  void retarget(const grid::ConformingCells& other, T spacing);
+  std::size_t bytes() const;
+};
+
+template <class T>
+kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
+                                             const grid::ConformingCells& coarse);
+
+/// Known nodes take their targets.
+template <class T>
+void set_known(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
+               const kernels::Plane<T>& uy);
+
+/// The plane at special cells takes the mean of their parts.
+template <class T>
+void set_part_means(const ConformingLevel<T>& level, const kernels::Plane<T>& pressure);
+
+/// Pressures of coarse parts: mean over the fine parts and cells they cover, weighted by area.
+/// `area`: of a fine regular cell.
+template <class T>
+void restrict_parts(const ConformingLevel<T>& fine, const kernels::Plane<const T>& fine_pressure,
+                    T area, ConformingLevel<T>& coarse);
+/// Pressures of fine parts and of cells under coarse parts, constant on those.
+template <class T>
+void prolong_parts(const ConformingLevel<T>& coarse, const kernels::Plane<const T>& coarse_pressure,
+                   ConformingLevel<T>& fine, const kernels::Plane<T>& fine_pressure);
+
+/// Displacements of the fine nodes in special cells of the coarse level, by its triangles.
+template <class T>
+void prolong_special_nodes(const ConformingLevel<T>& coarse,
+                           const kernels::Plane<const T>& coarse_x,
+                           const kernels::Plane<const T>& coarse_y, const ConformingLevel<T>& fine,
+                           const kernels::Plane<T>& x, const kernels::Plane<T>& y);
+
+}  // namespace drumhead::multigrid

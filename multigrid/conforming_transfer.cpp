@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Transfers between a level that conforms to curves and its coarser one.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "conforming.h"
+#include "conforming_visits.h"
+
+namespace drumhead::multigrid {
+namespace {
+
+/// The triangle of a special cell that holds a point, the nearest one if none does: its vertices
+/// and the point's barycentric coordinates.
+struct InTriangle {
+  std::array<int, 3> code{};
+  std::array<double, 3> weight{};
+  double least = -std::numeric_limits<double>::infinity();  ///< of the weights: > 0 inside
+};
+InTriangle find_triangle(const grid::ConformingCells& cells, int c, int j, grid::Point at) {
+  InTriangle found;
+  for_parts(cells, c, [&](int p) {
+    for_triangles(cells, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
+      std::array<double, 3> weight{};
+      for (std::size_t a = 0; a < 3; ++a)
+        weight[a] = grid::dot(triangle.gradient[a], at - cells.rest(c, j, code[(a + 1) % 3]));
+      const double least = *std::ranges::min_element(weight);
+      if (least > found.least) found = {code, weight, least};
+    });
+  });
+  return found;
+}
+
+/// Begins of rows 0 … rows of values that are sorted by row.
+template <class Rows>
+std::vector<int> row_begins(const Rows& values, int rows) {
+  std::vector<int> begin(std::size_t(rows) + 1, 0);
+  for (const auto& value : values) ++begin[std::size_t(value.j) + 1];
+  for (std::size_t j = 1; j < begin.size(); ++j) begin[j] += begin[j - 1];
+  return begin;
+}
+
+template <class T>
+void list_pairs(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
+                kernels::SpecialTransfer<T>& transfer) {
+  struct Row {
+    int j;
+    typename kernels::SpecialTransfer<T>::Pair pair;
+  };
+  std::vector<Row> rows;
+  auto coarse_part = [&](int i, int j, grid::Point centre) {
+    const int parent = coarse.find_cell(i / 2, j / 2);
+    return parent < 0 ? ~(i / 2) : coarse.part_at(parent, 0.5 * centre);
+  };
+  for_special(fine, [&](int c, int i, int j) {
+    for_parts(fine, c, [&](int p) {
+      rows.push_back({j, {p, coarse_part(i, j, fine.part_centre[std::size_t(p)])}});
+    });
+  });
+  for_special(coarse, [&](int, int I, int J) {
+    for (int j = 2 * J; j < std::min(2 * J + 2, fine.ny); ++j)
+      for (int i = 2 * I; i < std::min(2 * I + 2, fine.nx); ++i)
+        if (fine.find_cell(i, j) < 0)
+          rows.push_back({j, {~i, coarse_part(i, j, {i + 0.5, j + 0.5})}});
+  });
+  std::ranges::stable_sort(rows, {}, &Row::j);
+  for (const Row& row : rows) transfer.pair.push_back(row.pair);
+  transfer.pair_begin = row_begins(rows, fine.ny);
+}
+
+/// An inner fine node and the special coarse cell (I, J) that it rests in.
+struct FineNode {
+  int j, i, I, J;
+  InTriangle place;
+};
+/// Sorted by row, then column.
+std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
+                                             const grid::ConformingCells& coarse) {
+  std::vector<FineNode> nodes;
+  for_special(coarse, [&](int c, int I, int J) {
+    for (int j = std::max(2 * J, 1); j <= std::min(2 * J + 2, fine.ny - 1); ++j)
+      for (int i = std::max(2 * I, 1); i <= std::min(2 * I + 2, fine.nx - 1); ++i) {
+        const int held = fine.find_node(i, j);
+        const grid::Point rest =
+            held >= 0 ? fine.node[std::size_t(held)].rest : grid::Point{double(i), double(j)};
+        nodes.push_back({j, i, I, J, find_triangle(coarse, c, J, 0.5 * rest)});
+      }
+  });
+  // Where corners have moved, a node between two cells lies in that which it is deepest in.
+  std::ranges::stable_sort(nodes, [](const FineNode& a, const FineNode& b) {
+    return std::tuple(a.j, a.i, -a.place.least) < std::tuple(b.j, b.i, -b.place.least);
+  });
+  const auto doubled = std::ranges::unique(
+      nodes, [](const FineNode& a, const FineNode& b) { return a.j == b.j && a.i == b.i; });
+  nodes.erase(doubled.begin(), doubled.end());
+  return nodes;
+}
+
+template <class T>
+void list_nodes(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
+                kernels::SpecialTransfer<T>& transfer) {
+  std::vector<FineNode> listed;
+  for (const FineNode& node : nodes_in_special_cells(fine, coarse)) {
+    if (fine.find_node(node.i, node.j) >= 0) continue;
+    const double x = 0.5 * node.i - node.I, y = 0.5 * node.j - node.J;
+    std::array<double, 4> beyond{-(1 - x) * (1 - y), -x * (1 - y), -(1 - x) * y, -x * y};
+    for (std::size_t a = 0; a < 3; ++a)
+      if (node.place.code[a] < kernels::kFirstCrossing)
+        beyond[std::size_t(node.place.code[a])] += node.place.weight[a];
+    // A coarse row takes residuals from the three fine rows around it only; a node on it, beside a
+    // moved corner, has little weight in other rows.
+    if (node.j % 2 == 0) std::fill_n(beyond.begin() + (node.j == 2 * node.J ? 2 : 0), 2, 0.0);
+    if (std::ranges::all_of(beyond, [](double w) { return std::abs(w) < 1e-9; })) continue;
+    typename kernels::SpecialTransfer<T>::Node& out = transfer.node.emplace_back();
+    out.fine = node.i;
+    out.column = node.I;
+    out.row = node.J;
+    std::ranges::transform(beyond, out.weight, [](double w) { return T(w); });
+    listed.push_back(node);
+  }
+  transfer.node_begin = row_begins(listed, fine.ny + 1);
+}
+
+}  // namespace
+
+template <class T>
+kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
+                                             const grid::ConformingCells& coarse) {
+  kernels::SpecialTransfer<T> transfer;
+  list_pairs(fine, coarse, transfer);
+  list_nodes(fine, coarse, transfer);
+  return transfer;
+}
+
+template <class T>
+void restrict_parts(const ConformingLevel<T>& fine, const kernels::Plane<const T>& fine_pressure,
+                    T area, ConformingLevel<T>& coarse) {
+  std::vector<T> covered(coarse.pressure.size(), T(0));
+  std::ranges::fill(coarse.pressure, T(0));
+  for (int j = 0; j < fine.geometry.ny; ++j)
+    for (int k = fine.to_coarse.pair_begin[std::size_t(j)];
+         k < fine.to_coarse.pair_begin[std::size_t(j) + 1]; ++k) {
+      const auto [from, to] = fine.to_coarse.pair[std::size_t(k)];
+      if (to < 0) continue;
+      const T weight = from >= 0 ? fine.cells.area[std::size_t(from)] : area;
+      const T value = from >= 0 ? fine.pressure[std::size_t(from)] : fine_pressure.at(~from, j);
+      coarse.pressure[std::size_t(to)] += weight * value;
+      covered[std::size_t(to)] += weight;
+    }
+  // A coarse part that covers no centre of a fine one takes the mean over its cell.
+  for_special(coarse.geometry, [&](int c, int i, int j) {
+    T sum = T(0);
+    int count = 0;
+    for (int y = 2 * j; y < std::min(2 * j + 2, fine.geometry.ny); ++y)
+      for (int x = 2 * i; x < std::min(2 * i + 2, fine.geometry.nx); ++x, ++count)
+        sum += fine_pressure.at(x, y);
+    for_parts(coarse.geometry, c, [&](int p) {
+      T& value = coarse.pressure[std::size_t(p)];
+      value = covered[std::size_t(p)] > T(0) ? value / covered[std::size_t(p)] : sum / T(count);
+    });
+  });
+}
+
+template <class T>
+void prolong_parts(const ConformingLevel<T>& coarse, const kernels::Plane<const T>& coarse_pressure,
+                   ConformingLevel<T>& fine, const kernels::Plane<T>& fine_pressure) {
+  for (int j = 0; j < fine.geometry.ny; ++j)
+    for (int k = fine.to_coarse.pair_begin[std::size_t(j)];
+         k < fine.to_coarse.pair_begin[std::size_t(j) + 1]; ++k) {
+      const auto [to, from] = fine.to_coarse.pair[std::size_t(k)];
+      const T value =
+          from >= 0 ? coarse.pressure[std::size_t(from)] : coarse_pressure.at(~from, j / 2);
+      (to >= 0 ? fine.pressure[std::size_t(to)] : fine_pressure.at(~to, j)) = value;
+    }
+}
+
+template <class T>
+void prolong_special_nodes(const ConformingLevel<T>& coarse,
+                           const kernels::Plane<const T>& coarse_x,
+                           const kernels::Plane<const T>& coarse_y, const ConformingLevel<T>& fine,
+                           const kernels::Plane<T>& x, const kernels::Plane<T>& y) {
+  const grid::ConformingCells& cells = coarse.geometry;
+  auto value = [&](const kernels::Plane<const T>& plane, const std::vector<T>& crossing, int i,
+                   int j, int code) {
+    return code >= kernels::kFirstCrossing
+               ? double(crossing[std::size_t(code - kernels::kFirstCrossing)])
+               : double(plane.at(i + (code & 1), j + (code >> 1)));
+  };
+  for (const FineNode& node : nodes_in_special_cells(fine.geometry, cells)) {
+    double ux = 0.0, uy = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int code = node.place.code[a];
+      ux += node.place.weight[a] * value(coarse_x, coarse.cells.crossing_ux, node.I, node.J, code);
+      uy += node.place.weight[a] * value(coarse_y, coarse.cells.crossing_uy, node.I, node.J, code);
+    }
+    x.at(node.i, node.j) = T(ux);
+    y.at(node.i, node.j) = T(uy);
+  }
+}
+
+#define DRUMHEAD_INSTANTIATE(T)                                                                  \
+  template kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells&,            \
+                                                        const grid::ConformingCells&);           \
+  template void restrict_parts(const ConformingLevel<T>&, const kernels::Plane<const T>&, T,     \
+                               ConformingLevel<T>&);                                             \
+  template void prolong_parts(const ConformingLevel<T>&, const kernels::Plane<const T>&,         \
+                              ConformingLevel<T>&, const kernels::Plane<T>&);                    \
+  template void prolong_special_nodes(const ConformingLevel<T>&, const kernels::Plane<const T>&, \
+                                      const kernels::Plane<const T>&, const ConformingLevel<T>&, \
+                                      const kernels::Plane<T>&, const kernels::Plane<T>&);
+DRUMHEAD_INSTANTIATE(float)
+DRUMHEAD_INSTANTIATE(double)
+#undef DRUMHEAD_INSTANTIATE
+
+}  // namespace drumhead::multigrid

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Visits of the special cells of conforming cells, of their parts and of the triangles of a part.
+#include <array>
+
+#include <drumhead/grid/conforming.h>
+
+namespace drumhead::multigrid {
+
+/// visit(special cell, i, j)
+template <class F>
+void for_special(const grid::ConformingCells& cells, F&& visit) {
+  for (int j = 0; j < cells.ny; ++j)
+    for (int c = cells.cell_begin[std::size_t(j)]; c < cells.cell_begin[std::size_t(j) + 1]; ++c)
+      visit(c, cells.cell_column[std::size_t(c)], j);
+}
+template <class F>
+void for_parts(const grid::ConformingCells& cells, int c, F&& visit) {
+  for (int p = cells.part_begin[std::size_t(c)]; p < cells.part_begin[std::size_t(c) + 1]; ++p)
+    visit(p);
+}
+template <class F>
+void for_triangles(const grid::ConformingCells& cells, int p, F&& visit) {
+  const std::size_t first = std::size_t(cells.part_node_begin[std::size_t(p)]);
+  for (int t = cells.part_triangle_begin[std::size_t(p)];
+       t < cells.part_triangle_begin[std::size_t(p) + 1]; ++t) {
+    const grid::PartTriangle& triangle = cells.triangle[std::size_t(t)];
+    std::array<int, 3> code{};
+    for (std::size_t a = 0; a < 3; ++a)
+      code[a] = cells.part_node[first + std::size_t(triangle.node[a])];
+    visit(triangle, code);
+  }
+}
+
+}  // namespace drumhead::multigrid

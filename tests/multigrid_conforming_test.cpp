@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Kernels on lattices that conform to curves: force, product and energy against an energy that is
+// summed up here from the geometry alone, and its differences.
+#include <gtest/gtest.h>
+
+#include "support/conforming_scene.h"
+
+namespace drumhead {
+namespace {
+
+using namespace conforming_scene;
+
+/// Deformed place of a vertex of cell (i, j).
+Point deformed(Scene& scene, int cell, int i, int j, int code) {
+  const grid::ConformingCells& cells = scene.cells();
+  if (code >= 4) {
+    const grid::HeldNode& node = cells.curve_node[std::size_t(code - 4)];
+    return node.rest + node.wanted;
+  }
+  const int x = i + (code & 1), y = j + (code >> 1);
+  const Point rest = cell >= 0 ? cells.rest(cell, j, code) : Point{double(x), double(y)};
+  return rest + Point{scene.level.ux.view().at(x, y), scene.level.uy.view().at(x, y)};
+}
+
+struct Energy {
+  double elastic = 0.0, volume = 0.0, lagrangian = 0.0;
+};
+
+void add_volume(Energy& energy, double change, double area, double p) {
+  energy.volume += 0.5 * kKappa * change * change / area;
+  energy.lagrangian += p * change - 0.5 * area * p * p / kKappa;
+}
+
+void add_regular(Scene& scene, int i, int j, Energy& energy) {
+  std::array<Point, 4> x;
+  for (int c = 0; c < 4; ++c) x[std::size_t(c)] = deformed(scene, -1, i, j, c);
+  for (const auto& [a, b] : {std::pair{0, 1}, {2, 3}, {0, 2}, {1, 3}}) {
+    const Point edge = x[std::size_t(b)] - x[std::size_t(a)];
+    energy.elastic += 0.25 * grid::dot(edge, edge);
+  }
+  const double area = 0.5 * grid::cross(x[3] - x[0], x[2] - x[1]);
+  add_volume(energy, area - 1.0, 1.0, scene.level.pressure.view().at(i, j));
+}
+
+void add_special(Scene& scene, int cell, int i, int j, Energy& energy) {
+  const grid::ConformingCells& cells = scene.cells();
+  for (int p = cells.part_begin[std::size_t(cell)]; p < cells.part_begin[std::size_t(cell) + 1];
+       ++p) {
+    double area = 0.0;
+    const int first = cells.part_node_begin[std::size_t(p)];
+    for (int t = cells.part_triangle_begin[std::size_t(p)];
+         t < cells.part_triangle_begin[std::size_t(p) + 1]; ++t) {
+      const grid::PartTriangle& triangle = cells.triangle[std::size_t(t)];
+      Eigen::Matrix2d f = Eigen::Matrix2d::Zero();
+      for (std::size_t a = 0; a < 3; ++a) {
+        const int code = cells.part_node[std::size_t(first + triangle.node[a])];
+        const Point x = deformed(scene, cell, i, j, code), g = triangle.gradient[a];
+        f += Eigen::Vector2d(x.x, x.y) * Eigen::RowVector2d(g.x, g.y);
+      }
+      energy.elastic += 0.5 * triangle.area * f.squaredNorm();
+      area += triangle.area * f.determinant();
+    }
+    add_volume(energy, area - cells.part_area[std::size_t(p)], cells.part_area[std::size_t(p)],
+               scene.level.conforming->pressure[std::size_t(p)]);
+  }
+}
+
+Energy energy_of(Scene& scene) {
+  Energy energy;
+  for (int j = 0; j < kNy; ++j)
+    for (int i = 0; i < kNx; ++i)
+      if (const int cell = scene.cells().find_cell(i, j); cell >= 0)
+        add_special(scene, cell, i, j, energy);
+      else
+        add_regular(scene, i, j, energy);
+  energy.lagrangian += energy.elastic;
+  return energy;
+}
+
+/// The state moved by step·d.
+Energy energy_at(Scene& scene, const Eigen::VectorXd& d, double step) {
+  const Eigen::VectorXd before = scene.gather(scene.state());
+  scene.scatter(before + step * d, scene.state());
+  const Energy energy = energy_of(scene);
+  scene.scatter(before, scene.state());
+  return energy;
+}
+
+TEST(ConformingKernels, TheSceneHasAllKindsOfCells) {
+  Scene scene;
+  const auto& rows = scene.level.conforming->rows;
+  EXPECT_GT(scene.cells().cells(), 15);
+  EXPECT_GT(scene.cells().parts(), scene.cells().cells());
+  EXPECT_GT(scene.cells().node.size(), 3u);
+  EXPECT_GT(scene.cells().curve_node.size(), 10u);
+  EXPECT_LT(rows.near_begin(kNy + 1), (kNx - 1) * (kNy - 1));
+}
+
+// The energy is a polynomial of degree two in each of x and P: central differences are exact.
+TEST(ConformingKernels, ForceIsMinusTheDerivativeOfTheEnergy) {
+  Scene scene;
+  const Eigen::VectorXd force = scene.force();
+  for (Eigen::Index k = 0; k < force.size(); ++k) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(force.size(), k);
+    const double slope =
+        0.5 * (energy_at(scene, unit, 1.0).lagrangian - energy_at(scene, unit, -1.0).lagrangian);
+    ASSERT_NEAR(force[k], -slope, 1e-10) << "unknown " << k;
+  }
+}
+
+TEST(ConformingKernels, ProductIsTheDerivativeOfTheForce) {
+  Scene scene;
+  const Eigen::MatrixXd matrix = scene.assembled();
+  EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 1e-12);
+  const Eigen::VectorXd d = Eigen::VectorXd::Random(matrix.cols());
+  const Eigen::VectorXd before = scene.gather(scene.state());
+  scene.scatter(before + d, scene.state());
+  const Eigen::VectorXd ahead = scene.force();
+  scene.scatter(before - d, scene.state());
+  const Eigen::VectorXd behind = scene.force();
+  EXPECT_LT((matrix * d + 0.5 * (ahead - behind)).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(ConformingKernels, TheHessianSeesPressuresClamped) {
+  Scene scene;
+  scene.level.clamp_centre = 0.2;
+  scene.level.clamp_width = 0.5;
+  const Eigen::MatrixXd clamped = scene.assembled();
+  const kernels::Unknowns<double> state = scene.state();
+  auto clamp = [](double& p) { p = std::clamp(p - 0.2, -0.5, 0.5); };
+  for (int j = 0; j < kNy; ++j)
+    for (int i = 0; i < kNx; ++i) clamp(state.p.at(i, j));
+  for (int k = 0; k < state.listed_count; ++k) clamp(state.listed[k]);
+  scene.level.clamp_centre = 0.0;
+  scene.level.clamp_width = 1e30;
+  EXPECT_LT((scene.assembled() - clamped).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(ConformingKernels, EnergySumsAreThoseOfTheGeometry) {
+  Scene scene;
+  const Eigen::VectorXd d = 0.1 * Eigen::VectorXd::Random(scene.force().size());
+  scene.scatter(d, scene.level.d.view());
+  for (const double step : {0.0, 0.5}) {
+    const kernels::EnergySums sums =
+        kernels::energy<double>(scene.level.membrane(), scene.level.d.view(), step);
+    const Energy expected = energy_at(scene, d, step);
+    EXPECT_NEAR(sums.elastic, expected.elastic, 1e-10);
+    EXPECT_NEAR(sums.volume, expected.volume, 1e-10);
+    EXPECT_NEAR(sums.volume_merit, expected.volume, 1e-10);  // kappa ≤ 100 mu
+  }
+}
+
+}  // namespace
+}  // namespace drumhead

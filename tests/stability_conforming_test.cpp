@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Curves that the lattice conforms to: the whole solver against Newton's method on the assembled
+// matrix, and its order on the roundabout's exact solution.
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "support/oracle_conforming.h"
+#include "support/radial_reference.h"
+#include "support/scene_problem.h"
+
+namespace drumhead {
+namespace {
+
+constexpr grid::ConformOptions kOwnPressures{.least_area = 0.0};
+
+multigrid::Solution solve_to(const scenes::Scene& scene, int n, double kappa,
+                             double tolerance_cells) {
+  multigrid::SolverOptions options;
+  options.curves = multigrid::CurveMethod::conforming;
+  options.tolerance_px = tolerance_cells / n;
+  return multigrid::solve(scenes::problem(scene, n, kappa), options);
+}
+
+/// Largest distance from the assembled solution at nodes that rest in their places, in cells.
+double distance_to_oracle(const scenes::Scene& scene, int n, double kappa) {
+  const multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
+  const oracle::ConformingMembrane m = oracle::conforming_membrane(
+      problem.curves, problem.lattice, scenes::kappa_cells(scene, n, kappa), kOwnPressures);
+  const oracle::ConformingResult direct = oracle::newton(m);
+  EXPECT_TRUE(direct.converged);
+  const multigrid::Solution solution = solve_to(scene, n, kappa, 1e-8);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  double worst = 0.0;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      if (m.cells.find_node(i, j) >= 0) continue;
+      const Eigen::Index k = j * (n + 1) + i;
+      worst = std::max(worst,
+                       std::hypot(solution.u_px[std::size_t(k)] * n - (direct.state.x(k, 0) - i),
+                                  solution.v_px[std::size_t(k)] * n - (direct.state.x(k, 1) - j)));
+    }
+  std::printf("%s %d² kappa %g: %.1e cells from the assembled solution\n", scene.name.c_str(), n,
+              kappa, worst);
+  return worst;
+}
+
+TEST(ConformingSolver, AgreesWithTheAssembledMatrix) {
+  const double offset = scenes::kStudyOffset;
+  for (const double kappa : {1.0, 10.0}) {
+    EXPECT_LT(distance_to_oracle(scenes::roundabout(90.0, offset), 32, kappa), 1e-6);
+    EXPECT_LT(distance_to_oracle(scenes::shift(offset), 64, kappa), 1e-6);
+  }
+}
+
+/// RMS error of the roundabout in units of the square's side.
+double roundabout_error(int n, double kappa) {
+  const double offset = scenes::kStudyOffset;
+  const multigrid::Solution solution = solve_to(scenes::roundabout(90.0, offset), n, kappa, 1e-3);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged);
+  const oracle::RadialReference exact(.22, .40, std::acos(0.0), kappa);
+  const std::complex<double> centre(.5 + offset, .5 + .7 * offset);
+  double sum = 0.0;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const std::size_t k = std::size_t(j) * std::size_t(n + 1) + std::size_t(i);
+      const std::complex<double> rest(double(i) / n, double(j) / n),
+          moved(solution.u_px[k], solution.v_px[k]);
+      sum += std::norm(rest + moved - centre - exact.at(rest - centre));
+    }
+  return std::sqrt(sum) / (n + 1);
+}
+
+TEST(ConformingSolver, IsOfSecondOrder) {
+  for (const double kappa : {1.0, 10.0}) {
+    const double e64 = roundabout_error(64, kappa), e128 = roundabout_error(128, kappa),
+                 e256 = roundabout_error(256, kappa);
+    std::printf("kappa %g: RMS error %.2e %.2e %.2e of the side\n", kappa, e64, e128, e256);
+    EXPECT_GT(std::log2(e64 / e128), 1.8);
+    EXPECT_GT(std::log2(e128 / e256), 1.8);
+  }
+}
+
+TEST(ConformingSolver, RefusesSoftCurvesAndExactRows) {
+  multigrid::WarpProblem problem = scenes::problem(scenes::shift(), 32, 1.0);
+  multigrid::SolverOptions options;
+  options.curves = multigrid::CurveMethod::conforming;
+  options.exact = true;
+  EXPECT_THROW(static_cast<void>(multigrid::solve(problem, options)), std::invalid_argument);
+  options.exact = false;
+  problem.curves[0].weight = 5.0;
+  EXPECT_THROW(static_cast<void>(multigrid::solve(problem, options)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drumhead
