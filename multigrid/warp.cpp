@@ -72,7 +72,7 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                   std::to_string(other.nx) + " × " + std::to_string(other.ny) +
                                   " cells: must be on the problem's own");
   }
-  if (options.curves == CurveMethod::conforming) check_conforming(problem, options);
+  if (options.curve_method == CurveMethod::conforming) check_conforming(problem, options);
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 0");
@@ -179,7 +179,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const Clock::time_point start = Clock::now();
   const double most_weight = options.exact ? std::numeric_limits<double>::infinity()
                                            : kMostWeight * largest_mu(problem.material);
-  const bool conforming = options.curves == CurveMethod::conforming;
+  const bool conforming = options.curve_method == CurveMethod::conforming;
   const grid::CutCells cuts = grid::cut(
       conforming ? std::vector<grid::CurvePair>{} : problem.curves, problem.lattice, most_weight);
   const grid::Material material =

@@ -18,7 +18,7 @@ constexpr grid::ConformOptions kOwnPressures{.least_area = 0.0};
 multigrid::Solution solve_to(const scenes::Scene& scene, int n, double kappa,
                              double tolerance_cells) {
   multigrid::SolverOptions options;
-  options.curves = multigrid::CurveMethod::conforming;
+  options.curve_method = multigrid::CurveMethod::conforming;
   options.tolerance_px = tolerance_cells / n;
   return multigrid::solve(scenes::problem(scene, n, kappa), options);
 }
@@ -86,7 +86,7 @@ TEST(ConformingSolver, IsOfSecondOrder) {
 TEST(ConformingSolver, RefusesSoftCurvesAndExactRows) {
   multigrid::WarpProblem problem = scenes::problem(scenes::shift(), 32, 1.0);
   multigrid::SolverOptions options;
-  options.curves = multigrid::CurveMethod::conforming;
+  options.curve_method = multigrid::CurveMethod::conforming;
   options.exact = true;
   EXPECT_THROW(static_cast<void>(multigrid::solve(problem, options)), std::invalid_argument);
   options.exact = false;

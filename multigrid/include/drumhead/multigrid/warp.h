@@ -59,9 +59,9 @@ std::optional<CurveMethod> curve_method_named(std::string_view name);
 struct Solution;
 
 struct SolverOptions {
-  /// Conforming curves are hard, not exact, and need Solver::gcr.
-  CurveMethod curves = CurveMethod::averaged;
   Solver solver = Solver::gcr;
+  /// Conforming curves are hard, not exact, and need Solver::gcr.
+  CurveMethod curve_method = CurveMethod::averaged;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
