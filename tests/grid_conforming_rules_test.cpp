@@ -31,7 +31,8 @@ void expect_near(Point a, Point b, double tolerance) {
 }
 
 TEST(GridConformingRules, ANodeWithinTheSnapMovesOntoTheCurveAndOthersStay) {
-  const ConformingCells cells = conform({pin({{0.0, 2.2}, {4.0, 2.2}})}, unit_lattice(4, 4));
+  const ConformingCells cells =
+      conform({pin({{0.0, 2.2}, {4.0, 2.2}})}, unit_lattice(4, 4), {.snap = 0.25});
   ASSERT_EQ(cells.node.size(), 3u);
   for (int i = 1; i <= 3; ++i) {
     const int held = cells.find_node(i, 2);
@@ -48,7 +49,8 @@ TEST(GridConformingRules, ANodeWithinTheSnapMovesOntoTheCurveAndOthersStay) {
 }
 
 TEST(GridConformingRules, CrossingsFartherThanTheSnapBecomeCurveNodes) {
-  const ConformingCells cells = conform({pin({{0.0, 2.3}, {4.0, 2.3}})}, unit_lattice(4, 4));
+  const ConformingCells cells =
+      conform({pin({{0.0, 2.3}, {4.0, 2.3}})}, unit_lattice(4, 4), {.snap = 0.25});
   EXPECT_TRUE(cells.node.empty());
   EXPECT_EQ(cells.curve_node.size(), 5u);
   for (const NodePlace place : cells.curve_place) EXPECT_EQ(place, NodePlace::on_y_edge);

@@ -48,11 +48,13 @@ constexpr int kMostPartNodes = 8;
 
 struct ConformOptions {
   /// In cells, (0, 0.25]. A moved node is known, so that less snapping leaves more unknowns and
-  /// less stiffness at the curve; more makes better triangles. RMS error in px of a picture of 1000
-  /// at .1, .15, .25: turned circle (S2) 50², kappa/mu 10: .76 .77 .83, infinity: 1.36 1.50 1.86;
-  /// 100²: .225 .228 .233 and .43 .56 .67; moved circle (S4) 50², 10: .50 .56 .61. Above .25 it
-  /// only gets worse (.4, one pressure a part, S2 50² 10: 1.16 against .92).
-  double snap = 0.25;
+  /// less stiffness at the curve; more makes better triangles, which nothing was found to need. RMS
+  /// error in px of a picture of 1000 at .1, .15, .25: turned circle (S2) 50², kappa/mu 10: .76 .77
+  /// .83, infinity: 1.36 1.50 1.86; 100²: .225 .228 .233 and .43 .56 .67; moved circle (S4) 50²,
+  /// 10: .50 .56 .61. V(1,1) cycle at kappa 0, 128²: S2 .12 at .1, .17 at .25; S4 .11, .16. Below
+  /// .1 errors stay as they are; above .25 they only grow (.4, one pressure a part, S2 50²
+  /// 10: 1.16; .92 at .25).
+  double snap = 0.1;
   /// Parts of less area (in cells²) share the pressure of their largest neighbour on the same side
   /// until they have as much together, 0…1; 0: one pressure a part, which is stable at every kappa
   /// but stiff in small parts. Errors as above at .1, .3, .5, snap .25: S2 50², kappa/mu 10: .91
