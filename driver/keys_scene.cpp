@@ -58,6 +58,13 @@ bool set_tolerance(const Value& value, Options& o) {
   return set_positive(value, o.tolerance_px);
 }
 
+bool set_curve_method(const Value& value, Options& o) {
+  const auto* text = std::get_if<std::string>(&value);
+  const auto method = text ? multigrid::curve_method_named(*text) : std::nullopt;
+  if (method) o.curve_method = *method;
+  return method.has_value();
+}
+
 const std::array kKeys = {
     Key{.name = "picture",
         .value = "",
@@ -117,6 +124,14 @@ const std::array kKeys = {
             "inf: they are met exactly, as pins always are",
         .fallback = "inf",
         .set = set_weight},
+    Key{.name = "curve_method",
+        .value = "NAME",
+        .bound = "one of: averaged, conforming",
+        .help =
+            "averaged: curves are met on average in each cell, an error of first order in the "
+            "cell size; conforming: cells are divided along them, second order, weight inf only",
+        .fallback = "averaged",
+        .set = set_curve_method},
     Key{.name = "exact",
         .value = "",
         .bound = "true or false",

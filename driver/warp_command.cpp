@@ -156,6 +156,7 @@ int run_warp(Options options) {
   seconds.read = watch.lap();
 
   multigrid::SolverOptions solver{.solver = options.solver,
+                                  .curve_method = options.curve_method,
                                   .exact = options.exact,
                                   .tolerance_px = options.tolerance_px,
                                   .threads = options.threads,

@@ -43,6 +43,7 @@ kappa = inf
 weight = 1e3
 exact = true
 solver = "coloured-kaczmarz"
+curve_method = "conforming"
 tolerance = 0.5
 threads = 3
 output = "/tmp/c.png"
@@ -70,6 +71,7 @@ weight = "inf"
   EXPECT_EQ(o.weight, 1000);
   EXPECT_TRUE(o.exact);
   EXPECT_EQ(o.solver, multigrid::Solver::coloured_kaczmarz);
+  EXPECT_EQ(o.curve_method, multigrid::CurveMethod::conforming);
   EXPECT_EQ(o.tolerance_px, 0.5);
   EXPECT_EQ(o.threads, 3);
   EXPECT_EQ(o.output, "/tmp/c.png");
@@ -120,6 +122,7 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"model = \"arap\"", "model = 'arap': must be one of: crpm, harmonic"},
            {"exact = 1", "exact = 1: must be true or false"},
            {"solver = \"cg\"", "solver = 'cg': must be one of: gcr, kaczmarz, coloured-kaczmarz"},
+           {"curve_method = \"cut\"", "curve_method = 'cut': must be one of: averaged, conforming"},
            {"overlay = \"a.jpg\"", "overlay = 'a.jpg': must be the path of a .png file"},
            {"output = \"\"", "output = '': must be the path of a file"},
            {"kapa = 1", "scene.toml:1: kapa = 1: unknown key; a scene has picture, curves, cells"},
@@ -158,9 +161,9 @@ TEST(DriverScene, FlagsOverruleTheScene) {
 }
 
 TEST(DriverScene, FlagsTakeTheNamedValues) {
-  const Options o =
-      from_command_line({"12.png", "b.svg", "--kappa", "inf", "--weight=inf", "--tolerance", "auto",
-                         "--exact", "--solver", "minres", "--output", "1"});
+  const Options o = from_command_line({"12.png", "b.svg", "--kappa", "inf", "--weight=inf",
+                                       "--tolerance", "auto", "--exact", "--solver", "minres",
+                                       "--curve-method", "conforming", "--output", "1"});
   EXPECT_EQ(o.picture, "12.png");
   EXPECT_EQ(o.curves, "b.svg");
   EXPECT_EQ(o.output, "1");
@@ -169,6 +172,7 @@ TEST(DriverScene, FlagsTakeTheNamedValues) {
   EXPECT_EQ(o.tolerance_px, 0);
   EXPECT_TRUE(o.exact);
   EXPECT_EQ(o.solver, multigrid::Solver::minres);
+  EXPECT_EQ(o.curve_method, multigrid::CurveMethod::conforming);
 }
 
 TEST(DriverScene, WrongFlagsNameTheFlag) {
@@ -184,6 +188,7 @@ TEST(DriverScene, WrongFlagsNameTheFlag) {
                                                         {"--weight", "-inf"},
                                                         {"--tolerance", "0"},
                                                         {"--solver", "GCR"},
+                                                        {"--curve-method", "exact"},
                                                         {"--threads", "-2"},
                                                         {"--model", "arap"},
                                                         {"--lattice", "a.png"}}) {
