@@ -138,6 +138,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.tolerance_rms = 0.01 * double(level.spacing);
       find_start(hierarchy, start, options, newton_options, newton, clamp);
     } else {
+      // What a finer level changes is small: the positive definite Hessian does, until it does not.
+      clamp.theta = 1.0;
       hierarchy.prolong_state(l);
     }
     if (l == 0 && options.tolerance_cells > 0.0) {

@@ -35,8 +35,10 @@ constexpr double kSolves = 0.75;
 // kModelError times what the linear solver left. Less clamping than that takes more cycles than it
 // saves steps (S4 kappa 10, 800²: 131 work units with theta growing at every full step, 62 so).
 constexpr double kModelError = 2.0, kSlow = 0.5;
-// After a shortened step, or one that the norm of all equations did not show to be good, linear
-// systems are solved to this residual at least (else S1 kappa 10, 256², goes round in circles).
+// A full step this large beside the one before may well undo it.
+constexpr double kBackAndForth = 0.9;
+// After a shortened step linear systems are solved to this residual at least. (Also where the norm
+// of all equations did not show a step to be good: S1 kappa 10, 400², 912 work units, 379 without.)
 constexpr double kCareful = 0.1;
 
 /// Files the steps of a run and decides when it ends.
@@ -198,7 +200,7 @@ double Newton<T>::force_norm(bool pressure) {
 }
 
 template <class T>
-double Newton<T>::line_search() {
+double Newton<T>::line_search(double longest) {
   prepare_curve_merit();
   const kernels::Membrane<T> membrane = level_.membrane();
   auto merit = [&](double step) {
@@ -212,23 +214,23 @@ double Newton<T>::line_search() {
   for (int k = 0; k < cuts.count; ++k) curve_length += double(cuts.length[k]);
   const double slack = 4.0 * (double(std::numeric_limits<T>::epsilon()) * std::abs(before) +
                               penalty_ * curve_length * precision());
-  for (double step = 1.0; step >= kShortestStep; step *= 0.5)
+  for (double step = longest; step >= kShortestStep; step *= 0.5)
     if (merit(step) <= before + slack) return step;
   return 0.0;
 }
 
-/// Moves the state along d and sets the force there. A full step that brings all equations closer
-/// to zero is taken without asking the merit, which costs two energies, and which counts gaps
-/// absolutely: close to a solution the linear solver may leave one that is larger than before, yet
-/// negligible.
+/// Moves the state along d, `longest` at most, and sets the force there. A full step that brings
+/// all equations closer to zero is taken without asking the merit, which costs two energies, and
+/// which counts gaps absolutely: close to a solution the linear solver may leave one that is larger
+/// than before, yet negligible.
 template <class T>
-double Newton<T>::take_step(double norm_before) {
+double Newton<T>::take_step(double norm_before, double longest) {
   const bool pressure = bool(level_.pressure);
-  update(1.0, pressure);
+  update(longest, pressure);
   norm_ = force_norm(pressure);
-  if (norm_ < kSolves * norm_before) return 1.0;
-  update(-1.0, pressure);
-  const double step = line_search();
+  if (norm_ < kSolves * norm_before) return longest;
+  update(-longest, pressure);
+  const double step = line_search(longest);
   if (step > 0.0) update(step, pressure);
   norm_ = force_norm(pressure);
   return step;
@@ -300,6 +302,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   NewtonReport report;
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
+  double rms_before = 0.0, longest = 1.0;
   norm_ = force_norm(bool(level_.pressure));
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
@@ -316,7 +319,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       return report;
     }
     NewtonStep step;
-    step.step = take_step(norm);
+    step.step = take_step(norm, longest);
+    const bool shortened = step.step < longest;
     step.inverted_cells = inverted_cells();
     step.theta = clamp.theta;
     step.krylov = linear.cycles;
@@ -324,9 +328,12 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
     if (judge.ends_with(step, precision())) return report;
-    if (step.step < 1.0 || norm_ > kSolves * norm)
-      linear_options.content = std::min(linear_options.content, kCareful);
-    if (step.step < 1.0 && clamp.theta > 1.0)
+    // A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
+    // ends in the middle.
+    longest = longest == 1.0 && !shortened && n > 0 && rms > kBackAndForth * rms_before ? 0.5 : 1.0;
+    rms_before = rms;
+    if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
+    if (shortened && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
     else if (step.step == 1.0 && norm_ > std::max(kSlow, kModelError * linear.residual) * norm)
       clamp.theta = std::min(clamp.theta * kGrow, kExactTheta);

@@ -68,8 +68,8 @@ class Newton {
   double curve_merit(double step) const;
   void prepare_curve_merit();
   double force_norm(bool pressure);
-  double line_search();
-  double take_step(double norm_before);
+  double line_search(double longest);
+  double take_step(double norm_before, double longest);
   int inverted_cells() const;
   void update(double step, bool pressure);
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
