@@ -29,7 +29,8 @@ sh tests/install.sh >&2
 folder=build/bench
 cmake --preset release -B $folder -DDRUMHEAD_BUILD_BENCH=ON -DDRUMHEAD_BUILD_TESTS=OFF \
   -DDRUMHEAD_BUILD_DRIVER=OFF >&2
-cmake --build $folder --target kernels_bench resample_bench solve_bench rates_bench >&2
+cmake --build $folder --target kernels_bench resample_bench solve_bench rates_bench \
+  membranes_bench >&2
 
 # libgomp's threads otherwise spin between loops, on whatever else the machine does.
 export OMP_WAIT_POLICY=passive
@@ -47,3 +48,5 @@ echo
 $folder/bench/solve_bench $large
 echo
 $folder/bench/rates_bench
+echo
+$folder/bench/membranes_bench

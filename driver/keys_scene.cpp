@@ -25,8 +25,18 @@ bool set_margin(const Value& value, Options& o) {
 
 bool set_model(const Value& value, Options& o) {
   const auto* text = std::get_if<std::string>(&value);
-  if (!text || (*text != "crpm" && *text != "harmonic")) return false;
-  o.model = *text;
+  for (const kernels::ModelInfo& info : kernels::kModels) {
+    if (!text || *text != info.name) continue;
+    o.model = info.model;
+    return true;
+  }
+  return false;
+}
+
+bool set_eps(const Value& value, Options& o) {
+  const auto x = finite_number(value);
+  if (!x || *x < 0 || *x >= 1) return false;
+  o.eps = *x;
   return true;
 }
 
@@ -100,8 +110,9 @@ const std::array kKeys = {
         .set = set_margin},
     Key{.name = "model",
         .value = "M",
-        .bound = "one of: crpm, harmonic",
-        .help = "membrane: crpm, or harmonic, which is crpm with kappa 0",
+        .bound = "one of: crpm, harmonic, arap, corotated, linear, neohookean, stvk",
+        .help = "membrane: crpm; harmonic, which is crpm with kappa 0; arap (as rigid as possible, "
+                "kappa resists folds only); or an elastic body with mu and kappa as Lamé's moduli",
         .fallback = "crpm",
         .set = set_model},
     Key{.name = "mu",
@@ -113,9 +124,16 @@ const std::array kKeys = {
     Key{.name = "kappa",
         .value = "V",
         .bound = "a number, 0 or above, or inf",
-        .help = "resistance to change of area, in units of mu; inf: incompressible",
+        .help = "resistance to change of area, in units of mu; inf: incompressible (crpm; other "
+                "models: at most 1e6)",
         .fallback = "1",
         .set = set_kappa},
+    Key{.name = "eps",
+        .value = "V",
+        .bound = "a number from 0 to below 1",
+        .help = "arap: the share of its area below which a cell resists",
+        .fallback = "0.2",
+        .set = set_eps},
     Key{.name = "weight",
         .value = "D",
         .bound = "a number above 0, or inf",

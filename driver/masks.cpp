@@ -83,7 +83,7 @@ void apply_masks(const Options& options, int width, int height, const grid::Latt
       throw std::invalid_argument(mask.file.string() + ": " + error.what());
     }
   };
-  if (!options.kappa_mask.file.empty() && options.model == "harmonic")
+  if (!options.kappa_mask.file.empty() && options.model == kernels::Model::harmonic)
     throw std::invalid_argument(options.kappa_mask.file.string() +
                                 ": kappa_mask: the harmonic membrane has no kappa");
   material.mu_cells = cells(options.mu_mask, 1.0, kMuWhite, grid::mu_cells);

@@ -51,8 +51,9 @@ struct Options {
   std::filesystem::path backward_map, forward_map, lattice_file, lattice_cells, lattice_vtk;
   MapConvention map_convention = MapConvention::st;
   grid::LatticeOptions lattice;
-  std::string model = "crpm";  ///< crpm or harmonic
+  kernels::Model model = kernels::Model::crpm;
   double mu = grid::Material{}.mu;
+  std::optional<double> eps;              ///< arap only
   double kappa = grid::Material{}.kappa;  ///< in units of mu
   MaskOptions mu_mask, kappa_mask;
   double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own

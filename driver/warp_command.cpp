@@ -73,8 +73,13 @@ multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
   multigrid::WarpProblem problem;
   problem.lattice = grid::make_lattice(picture.width(), picture.height(), options.lattice);
   problem.material.mu = options.mu;
-  problem.material.kappa = options.model == "harmonic" ? 0.0 : options.kappa;
+  problem.material.kappa = options.model == kernels::Model::harmonic ? 0.0 : options.kappa;
+  problem.material.model = options.model;
+  if (options.eps && options.model != kernels::Model::arap)
+    throw std::invalid_argument("eps: only the model arap has one");
+  problem.material.eps = options.eps.value_or(problem.material.eps);
   apply_masks(options, picture.width(), picture.height(), problem.lattice, problem.material);
+  grid::check(problem.material, problem.lattice);
   check_inside(problem.lattice, curves);
   problem.curves = apply_settings(options, curves);
   return problem;
@@ -182,7 +187,8 @@ int run_warp(Options options) {
   const auto maps = write_maps(options, picture, frame, solution, outputs, progress);
   seconds.write += watch.lap();
   seconds.total = whole.lap();
-  const std::string report = report_json(solution, options.model, frame, seconds, maps);
+  const std::string report =
+      report_json(solution, std::string(name(options.model)), frame, seconds, maps);
   if (!options.report.empty()) write_text(report, outputs[options.report]);
   if (!options.page.empty()) {
     write_text(page_html(options.picture.filename(), report, page), outputs[options.page]);

@@ -31,6 +31,14 @@ void check(const Material& material, const Lattice& lattice) {
   if (!(material.mu > 0.0) || !std::isfinite(material.mu))
     refuse("mu", material.mu, "positive and finite");
   if (!(material.kappa >= 0.0)) refuse("kappa", material.kappa, "at least 0 (infinity allowed)");
+  // The isotropic membranes have no pressures in which kappa could be infinite.
+  constexpr double kMostKappa = 1e6;
+  const bool bounded = kernels::isotropic(material.model);
+  const std::string of = " of model " + std::string(kernels::name(material.model));
+  if (bounded && !(material.kappa <= kMostKappa))
+    refuse("kappa" + of, material.kappa, "at most 1e6");
+  if (!(material.eps >= 0.0) || !(material.eps < 1.0))
+    refuse("eps", material.eps, "at least 0 and below 1");
   check_size("mu_cells", material.mu_cells.size(), lattice);
   check_size("kappa_cells", material.kappa_cells.size(), lattice);
   for (std::size_t c = 0; c < material.mu_cells.size(); ++c) {
@@ -42,6 +50,8 @@ void check(const Material& material, const Lattice& lattice) {
     const double kappa = material.kappa_cells[c];
     if (!(kappa >= 0.0))
       refuse(cell_name("kappa", c, lattice), kappa, "at least 0 (infinity allowed)");
+    if (bounded && !(kappa <= kMostKappa))
+      refuse(cell_name("kappa", c, lattice) + of, kappa, "at most 1e6");
   }
 }
 

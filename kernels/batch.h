@@ -34,6 +34,11 @@ struct Lane<double> {
   static void store(double value, double* at) { *at = value; }
 };
 
+inline float square_root(float a) { return std::sqrt(a); }
+inline double square_root(double a) { return std::sqrt(a); }
+/// a < b ? x : y; both are computed.
+inline float if_less(float a, float b, float x, float y) { return a < b ? x : y; }
+inline double if_less(double a, double b, double x, double y) { return a < b ? x : y; }
 inline float smaller(float a, float b) { return b < a ? b : a; }
 inline float larger(float a, float b) { return a < b ? b : a; }
 inline double smaller(double a, double b) { return b < a ? b : a; }
@@ -45,6 +50,16 @@ xsimd::batch<T, A> smaller(xsimd::batch<T, A> a, xsimd::batch<T, A> b) {
 template <class T, class A>
 xsimd::batch<T, A> larger(xsimd::batch<T, A> a, xsimd::batch<T, A> b) {
   return xsimd::max(b, a);
+}
+
+template <class T, class A>
+xsimd::batch<T, A> square_root(xsimd::batch<T, A> a) {
+  return xsimd::sqrt(a);
+}
+template <class T, class A>
+xsimd::batch<T, A> if_less(xsimd::batch<T, A> a, xsimd::batch<T, A> b, xsimd::batch<T, A> x,
+                           xsimd::batch<T, A> y) {
+  return xsimd::select(a < b, x, y);
 }
 
 #if DRUMHEAD_ISA_LEVEL >= 3

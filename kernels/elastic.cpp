@@ -2,8 +2,11 @@
 #include <drumhead/kernels/elastic.h>
 
 #include <atomic>
+#include <cassert>
+#include <cmath>
 #include <vector>
 
+#include "isotropic.h"
 #include "kernel_table.h"
 #include "parallel.h"
 #include "special_energy.h"
@@ -25,6 +28,7 @@ void overwrite(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<
 
 template <class T>
 void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unknowns<T>& out) {
+  if (isotropic(m.law.model)) return apply_isotropic(m, d, out);
   const KernelTable<T>& kernels = table<T>();
   for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
     if (j > 0) kernels.apply_nodes(m, nullptr, d, out.x.row(j), out.y.row(j), j);
@@ -36,6 +40,7 @@ void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unkno
 template <class T>
 void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<const T>& d,
                      const Unknowns<T>& r) {
+  assert(!isotropic(m.law.model));
   const KernelTable<T>& kernels = table<T>();
   for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
     if (j > 0) kernels.residual_nodes(m, &f, d, r.x.row(j), r.y.row(j), j);
@@ -46,6 +51,10 @@ void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
 
 template <class T>
 int force(const Membrane<T>& m, const Unknowns<T>& f) {
+  if (isotropic(m.law.model)) {
+    isotropic_force(m, f);
+    return 0;
+  }
   const KernelTable<T>& kernels = table<T>();
   std::atomic<int> inverted = 0;
   for_rows(0, f.x.rows - 1, f.x.columns, [&](int j) {
@@ -62,11 +71,13 @@ int force(const Membrane<T>& m, const Unknowns<T>& f) {
 template <class T>
 EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   const KernelTable<T>& kernels = table<T>();
+  const auto row_energy = isotropic(m.law.model) ? isotropic_rows(m).energy : nullptr;
   const int rows = m.ux.rows - 1;
   thread_local std::vector<EnergySums> of_row;  // of the calling thread, kept from call to call
   of_row.assign(static_cast<std::size_t>(rows), {});
   EnergySums* const at = of_row.data();
   for_rows(0, rows, m.ux.columns, [&](int j) {
+    if (row_energy) return row_energy(m, d, step, at[j], j);
     const Columns special = m.special ? special_columns(m.special->cells(), j) : Columns{};
     kernels.energy(m, d, step, bool(d.x), special, at[j], j);
     if (m.special) add_special_energy(m, d, step, at[j], j);
@@ -77,6 +88,7 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
     sums.volume += row.volume;
     sums.volume_merit += row.volume_merit;
     sums.inverted_cells += row.inverted_cells;
+    if (row.least_J < sums.least_J || std::isnan(row.least_J)) sums.least_J = row.least_J;
   }
   return sums;
 }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "isotropic_table.h"
 #include "kernel_table.h"
 
 namespace drumhead::kernels {
@@ -81,6 +82,22 @@ template <>
 const KernelTable<double>& table<double>() {
   static const std::array<const KernelTable<double>*, 4> tables{
       &scalar::double_table, &sse2::double_table, &avx2::double_table, &avx512::double_table};
+  return *tables[std::size_t(current_isa())];
+}
+
+template <>
+const IsotropicTable<float>& isotropic_table<float>() {
+  static const std::array<const IsotropicTable<float>*, 4> tables{
+      &scalar::isotropic_floats, &sse2::isotropic_floats, &avx2::isotropic_floats,
+      &avx512::isotropic_floats};
+  return *tables[std::size_t(current_isa())];
+}
+
+template <>
+const IsotropicTable<double>& isotropic_table<double>() {
+  static const std::array<const IsotropicTable<double>*, 4> tables{
+      &scalar::isotropic_doubles, &sse2::isotropic_doubles, &avx2::isotropic_doubles,
+      &avx512::isotropic_doubles};
   return *tables[std::size_t(current_isa())];
 }
 

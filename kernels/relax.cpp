@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "isotropic.h"
 #include "kernel_table.h"
 #include "parallel.h"
 #include "special_sweeps.h"
@@ -263,6 +264,8 @@ class Relaxation {
 template <class T>
 void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
+  if (isotropic(level.membrane.law.model))
+    return relax_isotropic(level, stages.from_zero, coarse_d, coarse_f);
   const int ny = level.d.x.rows - 1;
   const StageList list = list_stages(stages, coarse_d != nullptr, level.membrane.special != nullptr,
                                      bool(level.d.p), level.cuts.count > 0, coarse_f != nullptr);
@@ -307,6 +310,7 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
 
 template <class T>
 double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
+  if (isotropic(level.membrane.law.model)) return isotropic_residual_norm2(level);
   const KernelTable<T>& kernels = table<T>();
   const Unknowns<const T> d = level.d, f = level.f;
   const int rows = d.x.rows - 1;

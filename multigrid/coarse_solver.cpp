@@ -80,7 +80,7 @@ void CoarseSolver<T>::factorise(Level<T>& level, bool pressure, T jump) {
   // Null modes (a constant pressure where 1/kappa = 0, dependent curve rows) get a small finite
   // answer.
   const Eigen::Index volume =
-      pressure ? Eigen::Index(level.nx) * level.ny + Eigen::Index(parts) : 0;
+      pressure && level.pressure ? Eigen::Index(level.nx) * level.ny + Eigen::Index(parts) : 0;
   const Eigen::Index first = n - Eigen::Index(2 * cuts) - volume;
   for (Eigen::Index k = first; k < n; ++k) matrix(k, k) -= 1e-7;
   factors_->lu.compute(matrix);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <drumhead/kernels/blocks.h>
 #include <drumhead/kernels/cuts.h>
 
 namespace drumhead::multigrid {
@@ -17,6 +18,9 @@ constexpr double kPressureJump = 0.4;
 // kappa 10, 64²: a factor of 2.1 per F-cycle without, .88 with .5; at 4 too stiff (S4, kappa
 // 100: 1.6).
 constexpr double kPartJump = 0.5;
+// The power method sees the largest eigenvalue from below, on the coarser levels.
+constexpr int kPowerSteps = 8;
+constexpr double kPowerMargin = 1.3;
 
 }  // namespace
 
@@ -24,6 +28,7 @@ template <class T>
 Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
     : hierarchy_(hierarchy), top_(top), pressure_(pressure) {
   hierarchy.restrict_state(top);
+  for (int l = top; l < hierarchy.size(); ++l) hierarchy[l].solid.averaged = l > top;
   clamp_width_ = std::min(hierarchy[top].clamp_width, most_clamp);
   hierarchy[top].pressure_jump = T(0);
   for (int l = top + 1; l < hierarchy.size(); ++l) {
@@ -32,8 +37,27 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
   }
   for (int l = top; l < hierarchy.size() && hierarchy.conforming(); ++l)
     hierarchy[l].conforming->rows.linearise(system(l).membrane, T(l > top ? kPartJump : 0.0));
+  if (pressure && kernels::isotropic(hierarchy.traits().model)) prepare_relaxation();
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
+}
+
+/// Diagonal blocks of all levels, and the bound of their relaxations: from the coarser levels,
+/// whose d and f are free.
+template <class T>
+void Cycle<T>::prepare_relaxation() {
+  double largest = 0.0;
+  for (int l = top_; l + 1 < hierarchy_.size(); ++l) {
+    Solid<T>&solid = hierarchy_[l].solid, &coarse = hierarchy_[l + 1].solid;
+    const kernels::LevelSystem<T> s = system(l);
+    kernels::inverse_blocks<T>(
+        s.membrane, {solid.block[0].view(), solid.block[1].view(), solid.block[2].view()});
+    kernels::average_tangents<T>(s.membrane, coarse.tangent.view());
+    if (l > top_)
+      largest = std::max(largest, kPowerMargin * kernels::largest_eigenvalue(s, kPowerSteps));
+  }
+  for (int l = top_; l < hierarchy_.size(); ++l)
+    hierarchy_[l].solid.largest = largest > 0.0 ? T(largest) : T(2);
 }
 
 template <class T>
@@ -44,7 +68,9 @@ kernels::LevelSystem<T> Cycle<T>::system(int l) {
                             .d = level.d.view(),
                             .f = level.f.view(),
                             .dq = level.dq.data(),
-                            .fq = level.fq.data()};
+                            .fq = level.fq.data(),
+                            .product = level.solid.product.view(),
+                            .largest = level.solid.largest};
   s.membrane.clamp_width = clamp_width_;
   if (!pressure_) s.d.p = s.f.p = {};
   if (level.conforming && l + 1 < hierarchy_.size()) {

@@ -43,6 +43,7 @@ class Cycle {
   void descend(int l, CycleKind kind, bool from_zero);
   void relax_down(int l, bool from_zero);
   void relax_up(int l);
+  void prepare_relaxation();
   void restrict_cuts(int l);
   void prolong_cuts(int l);
 

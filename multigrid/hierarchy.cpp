@@ -13,13 +13,24 @@ namespace {
 // The dense solver of the bottom level costs n³: at 8² (about 220 unknowns) .54 ms, as much as a
 // cycle on 100² cells; at 4² it is negligible.
 constexpr int kBottomCells = 4;
+// Isotropic membranes, whose coarse operators are poor on a lattice of fewer cells than curves: ML
+// with arap takes 52 cycles a step from 3 cells instead of 4 from 6.
+constexpr int kSolidBottomCells = 8;
 // kappa = 0 in some cells of a scene with pressures: compliance that makes P negligible.
 constexpr double kMostCompliance = 1e6;
+// arap: stiffness of a corner at first; Newton raises it, and takes what kappa has above that from
+// corner pressures.
+constexpr double kRelief = 10.0;
+// neohookean: the J below which ln J is a parabola at first; Newton lowers it.
+constexpr double kFirstFloor = 0.1;
 
 // Every part has a pressure of its own.
 constexpr grid::ConformOptions kConform{.least_area = 0.0};
 
-bool coarsest(int nx, int ny) { return std::max(nx, ny) <= kBottomCells || std::min(nx, ny) <= 3; }
+bool coarsest(int nx, int ny, kernels::Model model) {
+  const int most = kernels::isotropic(model) ? kSolidBottomCells : kBottomCells;
+  return std::max(nx, ny) <= most || std::min(nx, ny) <= 3;
+}
 
 }  // namespace
 
@@ -32,13 +43,15 @@ Hierarchy<T>::Hierarchy(const grid::Lattice& lattice, const grid::Material& mate
   grid::CutCells rows = cuts;
   for (T spacing = T(1);; spacing *= T(2)) {
     Level<T>& level = levels_.emplace_back(nx, ny, spacing, traits, meter);
+    if (kernels::isotropic(traits.model) && levels_.size() > 1)
+      level.solid.tangent = grid::Field<T>(nx, 10 * ny, meter);
     level.cuts = CutRows<T>(rows);
     level.wanted = rows.wanted;
     level.q.assign(2 * rows.column.size(), T(0));
     level.dq = level.fq = level.q;
     meter.add(level.cuts.bytes() + 3 * level.q.size() * sizeof(T) +
               level.wanted.size() * sizeof(grid::Point));
-    if (coarsest(nx, ny)) break;
+    if (coarsest(nx, ny, traits.model)) break;
     grid::CoarseCuts coarse = grid::coarsen(rows, nx, ny);
     level.to_coarse = {std::move(coarse.parent), {coarse.share.begin(), coarse.share.end()}};
     rows = std::move(coarse.cuts);
@@ -61,7 +74,15 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
   auto compliance = [](double kappa) { return std::min(kMostCompliance, 1.0 / kappa); };
   fill(finest.mu, material.mu_cells, [](double mu) { return mu; });
   if (traits_.pressure) fill(finest.compliance, material.kappa_cells, compliance);
-  for (Level<T>& level : levels_) level.compliance_value = T(compliance(material.kappa));
+  if (kernels::isotropic(traits_.model))
+    fill(finest.solid.kappa, material.kappa_cells, [](double kappa) { return kappa; });
+  for (Level<T>& level : levels_) {
+    level.compliance_value = T(compliance(material.kappa));
+    level.solid.law.kappa.value = T(material.kappa);
+    level.solid.law.eps =
+        T(material.model == kernels::Model::neohookean ? kFirstFloor : material.eps);
+  }
+  if (traits_.model == kernels::Model::arap) relieve(material, meter);
   for (int l = 0; l + 1 < size(); ++l) {
     Level<T>&fine = levels_[std::size_t(l)], &coarse = levels_[std::size_t(l) + 1];
     auto average = [&](const grid::Field<T>& from, grid::Field<T>& to) {
@@ -71,11 +92,23 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
     };
     average(fine.mu, coarse.mu);
     average(fine.compliance, coarse.compliance);
+    average(fine.solid.kappa, coarse.solid.kappa);
   }
   for (Level<T>& level : levels_) {
     if (!level.mu) continue;
     set_diagonal(level, meter);
     level.cuts.divide_jump(level.mu.view());
+  }
+}
+
+template <class T>
+void Hierarchy<T>::relieve(const grid::Material& material, grid::MemoryMeter& meter) {
+  const std::vector<float>& cells = material.kappa_cells;
+  const double most = cells.empty() ? material.kappa : double(*std::ranges::max_element(cells));
+  if (most <= kRelief) return;
+  for (Level<T>& level : levels_) {
+    level.solid.law.relief = T(kRelief);
+    for (auto& shift : level.solid.shift) shift = grid::Field<T>(level.nx, level.ny, meter);
   }
 }
 
@@ -125,6 +158,10 @@ void Hierarchy<T>::prolong_state(int l) {
                        fine.pressure.view());
     if (fine.pressure) set_part_means<T>(*fine.conforming, fine.pressure.view());
   }
+  fine.solid.law = coarse.solid.law;
+  for (std::size_t n = 0; n < 4; ++n)
+    if (fine.solid.shift[n])
+      kernels::interpolate_cells<T>(coarse.solid.shift[n].view(), fine.solid.shift[n].view());
   for (std::size_t k = 0; k < fine.to_coarse.parent.size(); ++k) {
     const int parent = fine.to_coarse.parent[k];
     for (std::size_t c = 0; c < 2; ++c)

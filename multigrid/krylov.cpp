@@ -42,8 +42,9 @@ class Gcr {
     double norm2 = 0.0;
   };
   Vector<T> make_vector() {
-    Vector<T> vector{grid::UnknownFields<T>(level_.nx, level_.ny, pressure_, meter_),
-                     std::vector<T>(level_.q.size(), T(0))};
+    Vector<T> vector{
+        grid::UnknownFields<T>(level_.nx, level_.ny, pressure_ && level_.pressure, meter_),
+        std::vector<T>(level_.q.size(), T(0))};
     if (pressure_) vector.fields.listed.assign(level_.d.listed.size(), T(0));
     return vector;
   }

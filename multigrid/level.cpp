@@ -73,6 +73,8 @@ Level<T>::Level(int nx_, int ny_, T spacing_, const SceneTraits& traits, grid::M
       d(nx, ny, traits.pressure, meter),
       f(nx, ny, traits.pressure, meter) {
   if (traits.pressure) pressure = grid::Field<T>(nx, ny, meter);
+  if (kernels::isotropic(traits.model)) solid = Solid<T>(nx, ny, meter);
+  solid.law.model = traits.model;
 }
 
 template <class T>
@@ -83,6 +85,7 @@ kernels::Membrane<T> Level<T>::membrane() const {
   m.clamp_centre = clamp_centre;
   m.clamp_width = clamp_width;
   m.pressure_jump = pressure_jump;
+  if (kernels::isotropic(solid.law.model)) solid.view(m);
   return m;
 }
 

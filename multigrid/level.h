@@ -9,15 +9,18 @@
 #include <drumhead/grid/cut_cells.h>
 #include <drumhead/grid/field.h>
 #include <drumhead/grid/material.h>
+#include <drumhead/kernels/model.h>
 #include <drumhead/kernels/relax.h>
 
 #include "conforming.h"
+#include "solid.h"
 
 namespace drumhead::multigrid {
 
 /// What of a scene decides which fields exist and how the rows are softened.
 struct SceneTraits {
-  bool pressure = true;        ///< kappa > 0 somewhere
+  bool pressure = true;  ///< crpm with kappa > 0 somewhere
+  kernels::Model model = kernels::Model::crpm;
   double jump = 0.0;           ///< qs of the equations: 0 for exact rows
   double jump_inside = 0.005;  ///< qs of the preconditioner
   double stiffest = 1.0;       ///< largest mu of a cell: no cell's P is smoothed too much
@@ -76,9 +79,13 @@ struct Level {
   T clamp_centre = T(0), clamp_width = T(1);
   T pressure_jump = T(0);  ///< of the volume rows, on levels below the one that is solved
 
+  Solid<T> solid;  ///< isotropic membranes only
+
   Level(int nx, int ny, T spacing, const SceneTraits& traits, grid::MemoryMeter& meter);
 
   kernels::Membrane<T> membrane() const;
+  /// Whether the membrane is more than the harmonic one.
+  bool nonlinear() const { return pressure || kernels::isotropic(solid.law.model); }
   /// The membrane without pressures, for the harmonic start.
   kernels::Membrane<T> harmonic() const;
   /// Makes the level conform to curves.

@@ -14,6 +14,8 @@ constexpr double kCellsPerFeature = 4.0;
 // A start finer than this would cost more than it is worth.
 constexpr int kMostStartCells = 128;
 constexpr int kStartSteps = 60;
+// arap with a large kappa: the way out of folds is long, and its steps are cheap.
+constexpr int kFoldSteps = 200;
 constexpr int kLevelSteps = 20;
 constexpr int kPathSteps = 12;
 constexpr int kStepsPerPathStep = 4;
@@ -146,6 +148,10 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = options.tolerance_cells;
+    }
+    if (level.solid.law.relief > T(0)) {
+      newton_options.most_steps = kFoldSteps;
+      newton_options.linear.content = newton_options.linear.reduction;
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <drumhead/kernels/blocks.h>
 #include <drumhead/kernels/cuts.h>
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
@@ -17,6 +18,11 @@ constexpr double kShortestStep = 1e-4;
 constexpr double kExactTheta = 1e6;
 // Pressures looked at for the median; the clamp does not need it exactly.
 constexpr int kMedianSamples = 1 << 12;
+// arap: corners get stiffer, by this factor and up to this many mu, then their pressures move, each
+// time the force has fallen to this share of what the last move made it.
+constexpr double kReliefGrows = 3.0, kMostRelief = 300.0, kFollowed = 0.3;
+// arap: kappa from which folded corners are not accepted.
+constexpr double kAsInequality = 1e3;
 // A linear solution this bad is not worth a step with an unclamped Hessian.
 constexpr double kStagnated = 0.8;
 // So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr, whose
@@ -28,6 +34,8 @@ constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
 // So many steps in a row shorter than kCreep lead nowhere.
 constexpr double kCreep = 1e-2;
 constexpr int kMostCreeping = 5;
+// neohookean: no J of a solution is below this.
+constexpr double kLeastFloor = 1e-3;
 // A full step is taken without asking the merit when the norm of all equations falls below this
 // share.
 constexpr double kSolves = 0.75;
@@ -153,8 +161,7 @@ double Newton<T>::median_pressure() const {
 
 template <class T>
 void Newton<T>::set_clamp(double theta) {
-  if (!level_.pressure) return;
-  level_.clamp_centre = T(median_pressure());
+  if (level_.pressure) level_.clamp_centre = T(median_pressure());
   level_.clamp_width = theta >= kExactTheta ? T(1e30) : T(theta);
 }
 
@@ -225,11 +232,14 @@ double Newton<T>::line_search(double longest) {
 /// than before, yet negligible.
 template <class T>
 double Newton<T>::take_step(double norm_before, double longest) {
-  const bool pressure = bool(level_.pressure);
-  update(longest, pressure);
-  norm_ = force_norm(pressure);
-  if (norm_ < kSolves * norm_before) return longest;
-  update(-longest, pressure);
+  const bool pressure = level_.nonlinear();
+  // arap: from folds on, equations closer to zero may be further from the minimum.
+  if (level_.solid.law.relief == T(0)) {
+    update(longest, pressure);
+    norm_ = force_norm(pressure);
+    if (norm_ < kSolves * norm_before) return longest;
+    update(-longest, pressure);
+  }
   const double step = line_search(longest);
   if (step > 0.0) update(step, pressure);
   norm_ = force_norm(pressure);
@@ -246,6 +256,42 @@ void Newton<T>::update(double step, bool pressure) {
   for (std::size_t k = 0; pressure && k < level_.d.listed.size(); ++k)
     level_.conforming->pressure[k] += T(step) * level_.d.listed[k];
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
+}
+
+/// arap, once the state has followed the last move: stiffer corners, and from kMostRelief on a step
+/// of the method of multipliers. Its pressures run away while corners are deep in a fold.
+template <class T>
+void Newton<T>::move_corners() {
+  Solid<T>& solid = level_.solid;
+  if (double(solid.law.relief) < kMostRelief)
+    solid.law.relief = T(std::min(kMostRelief, kReliefGrows * double(solid.law.relief)));
+  else
+    kernels::update_corner_pressure<T>(
+        level_.membrane(), {solid.shift[0].view(), solid.shift[1].view(), solid.shift[2].view(),
+                            solid.shift[3].view()});
+  norm_ = moved_norm_ = force_norm(true);
+}
+
+/// arap: whether the state is as free of folds as kappa asks for; from 1e3 on it stands for an
+/// inequality, and a tolerance reached in a fold is no end.
+template <class T>
+bool Newton<T>::unfolded() const {
+  const kernels::Law<T>& law = level_.solid.law;
+  if (law.relief == T(0) || double(law.kappa.value) < kAsInequality) return true;
+  return kernels::energy<T>(level_.membrane(), {}, T(0)).least_J > 0.0;
+}
+
+/// neohookean: true if the law had to be brought closer to the logarithm than it was for the state.
+template <class T>
+bool Newton<T>::lower_floor() {
+  kernels::Law<T>& law = level_.solid.law;
+  if (law.model != kernels::Model::neohookean) return false;
+  const double least_J = kernels::energy<T>(level_.membrane(), {}, T(0)).least_J;
+  if (!(least_J < double(law.eps)) || double(law.eps) <= kLeastFloor) return false;
+  law.eps = T(std::max(kLeastFloor,
+                       std::clamp(0.5 * least_J, 0.1 * double(law.eps), 0.5 * double(law.eps))));
+  norm_ = force_norm(true);
+  return true;
 }
 
 template <class T>
@@ -268,7 +314,7 @@ double Newton<T>::precision() const {
 
 template <class T>
 double Newton<T>::largest_row_gap() {
-  set_force(bool(level_.pressure));
+  set_force(level_.nonlinear());
   double largest = 0.0;
   for (const T gap : level_.fq) {
     const double size = std::abs(double(gap));
@@ -281,7 +327,7 @@ double Newton<T>::largest_row_gap() {
 template <class T>
 LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
                                    ClampSchedule& clamp) {
-  const bool pressure = bool(level_.pressure);
+  const bool pressure = level_.nonlinear();
   const int top = hierarchy_.index_of(level_);
   LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options, meter_);
   if (linear.residual > kStagnated && clamp.theta > 1.0) {
@@ -303,7 +349,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
   double rms_before = 0.0, longest = 1.0;
-  norm_ = force_norm(bool(level_.pressure));
+  norm_ = moved_norm_ = force_norm(level_.nonlinear());
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
@@ -327,12 +373,15 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.residual = linear.residual;
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
-    if (judge.ends_with(step, precision())) return report;
+    const bool relieved = level_.solid.law.relief > T(0), ends = judge.ends_with(step, precision());
+    if (ends && (!relieved || (followed_ && unfolded())) && !lower_floor()) return report;
     // A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
     // ends in the middle.
     longest = longest == 1.0 && !shortened && n > 0 && rms > kBackAndForth * rms_before ? 0.5 : 1.0;
     rms_before = rms;
     if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
+    followed_ = relieved && step.step == 1.0 && (ends || norm_ < kFollowed * moved_norm_);
+    if (followed_) move_corners();
     if (shortened && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
     else if (step.step == 1.0 && norm_ > std::max(kSlow, kModelError * linear.residual) * norm)

@@ -72,6 +72,9 @@ class Newton {
   double take_step(double norm_before, double longest);
   int inverted_cells() const;
   void update(double step, bool pressure);
+  void move_corners();
+  bool unfolded() const;
+  bool lower_floor();
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
 
@@ -81,6 +84,8 @@ class Newton {
   std::vector<double> gap_, slope_;  ///< per curve row: b − W u − M q⁺ and −W du
   double penalty_ = 0.0;             ///< nu
   double norm_ = 0.0;                ///< of the force that was set last
+  double moved_norm_ = 0.0;          ///< when the corners moved last
+  bool followed_ = false;            ///< whether they moved after the last step
   int inverted_cells_ = 0;           ///< at the state of that force
 };
 

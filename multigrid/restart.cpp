@@ -79,12 +79,15 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
                              ? options.tolerance_cells
                              : kShare * before.discretisation_rms_px / cell_px;
   ClampSchedule clamp;
+  const kernels::Law<T> law = level.solid.law;
   auto progress = [&](int step) {
     if (options.progress) options.progress({level.nx, level.ny, step, std::min(1.0, 0.25 * step)});
   };
   NewtonReport done = Newton<T>(hierarchy, 0, meter).run(newton, clamp, progress);
   if (done.status != Status::converged) {
     clear_state(level);
+    level.solid.law = law;
+    for (auto& shift : level.solid.shift) shift.clear();
     return false;
   }
   report.status = done.status;

@@ -41,6 +41,11 @@ constexpr double kNotableGap = 1.0;
 constexpr double kJump = 0.005;
 
 void check_conforming(const WarpProblem& problem, const SolverOptions& options) {
+  const kernels::Model model = problem.material.model;
+  if (kernels::isotropic(model))
+    throw std::invalid_argument("curve method conforming: must be averaged for model " +
+                                std::string(kernels::name(model)) +
+                                "; conforming curves need crpm or harmonic");
   for (const grid::CurvePair& curve : problem.curves)
     if (!std::isinf(curve.weight))
       throw std::invalid_argument("curve '" + curve.name +
@@ -72,6 +77,11 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                   std::to_string(other.nx) + " × " + std::to_string(other.ny) +
                                   " cells: must be on the problem's own");
   }
+  const kernels::Model model = problem.material.model;
+  if (kernels::isotropic(model) && options.solver != Solver::gcr)
+    throw std::invalid_argument("solver " + std::string(name(options.solver)) + ": must be " +
+                                name(Solver::gcr) + " for model " +
+                                std::string(kernels::name(model)));
   if (options.curve_method == CurveMethod::conforming) check_conforming(problem, options);
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
@@ -81,6 +91,7 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
 /// The material the default path solves: kappa capped, with a note.
 grid::Material capped(const grid::Material& material, SolveReport& report) {
   grid::Material out = material;
+  if (kernels::isotropic(material.model)) return out;
   bool changed = out.kappa > kMostKappa;
   out.kappa = std::min(out.kappa, kMostKappa);
   for (float& kappa : out.kappa_cells) {
@@ -100,6 +111,7 @@ double largest_mu(const grid::Material& material) {
 }
 
 bool has_pressure(const grid::Material& material) {
+  if (material.model != kernels::Model::crpm) return false;
   if (material.kappa_cells.empty()) return material.kappa > 0.0;
   return std::ranges::any_of(material.kappa_cells, [](float kappa) { return kappa > 0.0f; });
 }
@@ -146,7 +158,10 @@ void export_split_cells(const Hierarchy<T>& hierarchy, Solution& solution) {
 template <class T>
 EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {
   const Level<T>& level = hierarchy[0];
-  const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), {}, T(0));
+  kernels::Membrane<T> membrane = level.membrane();
+  membrane.law.relief = T(0);  // the energy of Eq. 8 itself
+  for (auto& shift : membrane.law.shift) shift = {};
+  const kernels::EnergySums sums = kernels::energy<T>(membrane, {}, T(0));
   const double area = double(level.nx) * double(level.ny);
   EnergyReport energy{.elastic = sums.elastic / area, .volume = sums.volume / area};
   // |q|²/(2 d len): the energy of a soft row's spring; the gap that the q-jump opens is not
@@ -185,6 +200,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
   const SceneTraits traits{.pressure = has_pressure(material),
+                           .model = material.model,
                            .jump = kJump,
                            .jump_inside = kJump,
                            .stiffest = largest_mu(material)};
@@ -307,7 +323,10 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);
-  if (solution.pressure.empty()) solution.report.model = "harmonic";
+  const kernels::Model model = problem.material.model;
+  solution.report.model = kernels::isotropic(model)   ? std::string(kernels::name(model))
+                          : solution.pressure.empty() ? "harmonic"
+                                                      : "crpm";
   return solution;
 }
 

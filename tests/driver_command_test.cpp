@@ -95,6 +95,16 @@ TEST_F(DriverCommand, RefusesNanInAScene) {
                  {"scene.toml:3: kappa = nan: must be a number, 0 or above, or inf"});
 }
 
+TEST_F(DriverCommand, RefusesMembranesOutsideTheirDomain) {
+  expect_refused(
+      {"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "arap", "--kappa", "inf"},
+      {"kappa of model arap", "at most 1e6"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--eps", "0.1"},
+                 {"eps: only the model arap has one"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "rubber"},
+                 {"--model rubber: must be one of: crpm, harmonic, arap"});
+}
+
 TEST_F(DriverCommand, RefusesAnUnwritableOutputBeforeItWorks) {
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "no/such/folder/out.png"},
                  {"no/such/folder/out.png: cannot be written: No such file or directory"});

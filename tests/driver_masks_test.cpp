@@ -123,7 +123,7 @@ TEST_F(DriverMasks, RefusesWhatTheCoefficientCannotBe) {
   options.kappa = std::numeric_limits<double>::infinity();
   EXPECT_NE(refusal(options).find("m.png: black = inf: must be finite"), std::string::npos);
   options.kappa = 1.0;
-  options.model = "harmonic";
+  options.model = kernels::Model::harmonic;
   EXPECT_NE(refusal(options).find("m.png: kappa_mask: the harmonic membrane has no kappa"),
             std::string::npos);
 }

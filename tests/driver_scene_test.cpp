@@ -65,7 +65,7 @@ weight = "inf"
   EXPECT_EQ(o.curves, scratch / "sub/b.svg");
   EXPECT_EQ(o.lattice.cells, 100);
   EXPECT_EQ(o.lattice.margin, 0);
-  EXPECT_EQ(o.model, "harmonic");
+  EXPECT_EQ(o.model, kernels::Model::harmonic);
   EXPECT_EQ(o.mu, 2);
   EXPECT_TRUE(std::isinf(o.kappa));
   EXPECT_EQ(o.weight, 1000);
@@ -119,7 +119,8 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"threads = 0", "threads = 0: must be a whole number from 1"},
            {"cell_size = inf", "cell_size = inf: must be a finite number above 0"},
            {"cells = 5\ncell_size = 5", "scene.toml:2: cell_size: give either cells or cell_size"},
-           {"model = \"arap\"", "model = 'arap': must be one of: crpm, harmonic"},
+           {"model = \"rubber\"", "model = 'rubber': must be one of: crpm, harmonic, arap"},
+           {"eps = 1", "eps = 1: must be a number from 0 to below 1"},
            {"exact = 1", "exact = 1: must be true or false"},
            {"solver = \"cg\"", "solver = 'cg': must be one of: gcr, kaczmarz, coloured-kaczmarz"},
            {"curve_method = \"cut\"", "curve_method = 'cut': must be one of: averaged, conforming"},
@@ -190,7 +191,8 @@ TEST(DriverScene, WrongFlagsNameTheFlag) {
                                                         {"--solver", "GCR"},
                                                         {"--curve-method", "exact"},
                                                         {"--threads", "-2"},
-                                                        {"--model", "arap"},
+                                                        {"--model", "rubber"},
+                                                        {"--eps", "-0.1"},
                                                         {"--lattice", "a.png"}}) {
     const std::string flag = given.first, value = given.second;
     const std::string message = message_of([&] {

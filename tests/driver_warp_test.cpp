@@ -242,6 +242,10 @@ TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
   EXPECT_EQ(soft["model"], "crpm");
   EXPECT_EQ(harmonic["energy"], soft["energy"]);
   EXPECT_EQ(warped, same);
+  const auto [elastic, bent] = run("--model", "corotated");
+  EXPECT_EQ(elastic["model"], "corotated");
+  EXPECT_EQ(elastic["status"], "converged");
+  EXPECT_NE(bent, warped);
 }
 
 }  // namespace

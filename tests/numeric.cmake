@@ -52,3 +52,7 @@ drumhead_test(NAME multigrid_solvers_test
   SOURCES multigrid_solvers_test.cpp support/scene_problem.cpp
   LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 target_include_directories(multigrid_solvers_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
+
+drumhead_test(NAME stability_membranes_test
+  SOURCES stability_membranes_test.cpp support/oracle_membrane.cpp support/scene_problem.cpp
+  LINK drumhead_oracle drumhead::multigrid LABEL numeric)

@@ -10,6 +10,8 @@
 //   [K + P_H G   Bᵀ         −Wᵀ] [du]   [f.x, f.y]
 //   [B           −A/kappa   0  ] [dP] = [f.p     ]
 //   [−W          0          −M ] [dq]   [f of q  ]
+// For the isotropic membranes (model.h) these functions go to the kernels of isotropic.h: no P
+// exists, elastic and volume are the energies with mu and with kappa, volume_merit is volume.
 // Curve terms are in cuts.h; the functions here do the elastic part of every row. Nodes on the
 // boundary are fixed: they are read (as 0 in a correction) and never written.
 #include <drumhead/kernels/views.h>
@@ -40,6 +42,8 @@ struct EnergySums {
   /// ≤ 100 mu simply A kappa/2 (J* − 1)²: the volume part of the line search's merit function.
   double volume_merit = 0.0;
   double inverted_cells = 0.0;  ///< number of cells with J* < 0
+  /// Isotropic membranes only: the least J at the points where their energy is taken.
+  double least_J = 1e30;
 };
 
 /// The sums at x̂ + step·d (P⁺ = P + dP for any step). d.x null: at the state itself, P⁺ = P.

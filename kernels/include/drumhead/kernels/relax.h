@@ -8,6 +8,9 @@
 // Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag
 // K inner product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014,
 // Eq. 4).
+// Isotropic membranes (model.h), whose Hessian products are not done node by node: nodes by two
+// steps of Chebyshev iteration with the 2×2 blocks D of the Hessian's diagonal, then curve rows in
+// the inner product of D, forwards and in reverse.
 #include <vector>
 
 #include <drumhead/kernels/cuts.h>
@@ -28,6 +31,8 @@ struct LevelSystem {
   /// With special cells: to the coarser level, and that level's rows.
   const SpecialTransfer<T>* transfer = nullptr;
   const SpecialRows<T>* coarse_special = nullptr;
+  Unknowns<T> product;  ///< isotropic membranes: room for H d
+  T largest = T(2);     ///< isotropic membranes: largest eigenvalue of D⁻¹ H
 };
 
 /// Row buffers for the fused restriction, one set a thread; make once, reuse.

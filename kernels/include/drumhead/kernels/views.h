@@ -66,6 +66,24 @@ struct Coefficient {
 template <class T>
 class SpecialRows;
 
+/// See model.h.
+enum class Model { crpm, harmonic, arap, corotated, linear, neohookean, stvk };
+
+/// What the isotropic membranes have in place of pressures. kappa is the second modulus: of the
+/// one-sided term for arap, Lamé's λ for the others.
+template <class T>
+struct Law {
+  Model model = Model::crpm;
+  Coefficient<T> kappa;
+  /// arap: the J below which the one-sided term acts. neohookean: the J below which ln J goes on as
+  /// a parabola.
+  T eps = T(0.2);
+  /// arap: the corner pressures P ≤ 0 of earlier steps over `relief`, per corner 00, 10, 01, 11 of
+  /// a cell; null: none (isotropic.h).
+  Plane<const T> shift[4];
+  T relief = T(0);
+};
+
 /// The membrane linearised at a state: all that its operators read (Eq. 5, 6, 7 of Setaluri et al.
 /// 2014). Displacements u = x̂ − X of every level are in cells of the finest lattice; a level's own
 /// cell side in this unit is `spacing`.
@@ -91,6 +109,13 @@ struct Membrane {
   /// linearised at this state (force and energy do without that), and the pressures of their parts.
   const SpecialRows<T>* special = nullptr;
   const T* listed = nullptr;
+  Law<T> law;
+  /// Isotropic membranes: the inverse 2×2 blocks of the Hessian's diagonal, xx, xy, yy; needed by
+  /// the relaxation only.
+  Plane<const T> inverse_block[3];
+  /// Their coarse operators: the ten entries of each cell's mean tangent, entry e of cell row j in
+  /// row e·ny + j (blocks.h); null: the Hessian at the state.
+  Plane<const T> tangent;
 };
 
 /// The averaged curve rows of one level (Eq. 2): one pair of rows a cut cell, sorted by row, then

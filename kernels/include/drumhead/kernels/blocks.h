@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the isotropic membranes (model.h) need besides elastic.h and relax.h.
+#include <drumhead/kernels/relax.h>
+
+namespace drumhead::kernels {
+
+/// block := inverses of the 2×2 blocks (xx, xy, yy) of the Hessian's diagonal at the interior
+/// nodes.
+template <class T>
+void inverse_blocks(const Membrane<T>& membrane, const Plane<T> (&block)[3]);
+
+/// coarse := mean tangents of the coarse cells, ten entries each (Membrane::tangent), from the
+/// membrane's own tangents or, if it has none, from those at its state.
+template <class T>
+void average_tangents(const Membrane<T>& membrane, const Plane<T>& coarse);
+
+/// Estimate from below of the largest eigenvalue of D⁻¹ H, by `steps` steps of the power method;
+/// level.d and level.product are lost.
+template <class T>
+double largest_eigenvalue(const LevelSystem<T>& level, int steps);
+
+/// shift := min(0, J − eps + shift) kappa/(kappa + c) at every corner, c = law.relief: one step of
+/// the method of multipliers (arap, model_arap.h). shift are the planes that membrane.law views.
+template <class T>
+void update_corner_pressure(const Membrane<T>& membrane, const Plane<T> (&shift)[4]);
+
+}  // namespace drumhead::kernels

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// The whole solver with every membrane: the study scenes converge, and the lattice is that of a
+// direct Newton's method on the assembled oracle.
+#include <gtest/gtest.h>
+
+#include <drumhead/kernels/model.h>
+
+#include "support/field_difference.h"
+#include "support/oracle_membrane.h"
+#include "support/scene_problem.h"
+
+namespace drumhead {
+namespace {
+
+using kernels::Model;
+
+struct Case {
+  const char* name;
+  scenes::Scene scene;
+  Model model;
+  double kappa = 1.0;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+multigrid::Solution solved(const Case& c, int n, double tolerance_cells, bool exact = false) {
+  multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
+  problem.material.model = c.model;
+  return multigrid::solve(problem, {.exact = exact, .tolerance_px = tolerance_cells / n});
+}
+
+const scenes::Scene s1 = scenes::sponge(scenes::kStudyOffset),
+                    s2 = scenes::roundabout(45.0, scenes::kStudyOffset),
+                    s4 = scenes::shift(scenes::kStudyOffset);
+
+std::vector<Case> cases() {
+  return {{"S1corotated", s1, Model::corotated},
+          {"S2corotated", s2, Model::corotated},
+          {"S4corotated", s4, Model::corotated},
+          {"S1linear", s1, Model::linear},
+          {"S2linear", s2, Model::linear},
+          {"S4linear", s4, Model::linear},
+          {"S1neohookean", s1, Model::neohookean},
+          {"S2neohookean", s2, Model::neohookean},
+          {"S4neohookean", s4, Model::neohookean},
+          {"S1arap", s1, Model::arap},
+          {"S2arap", s2, Model::arap},
+          {"S4arap", s4, Model::arap},
+          {"S2stvk", s2, Model::stvk}};
+}
+
+class Membrane : public testing::TestWithParam<Case> {};
+
+TEST_P(Membrane, Converges) {
+  const multigrid::Solution solution = solved(GetParam(), 128, 0.0);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  EXPECT_EQ(solution.report.model, name(GetParam().model));
+  EXPECT_TRUE(solution.pressure.empty());
+}
+
+class DirectMembrane : public testing::TestWithParam<Case> {};
+
+TEST_P(DirectMembrane, HasTheSameLattice) {
+  const Case& c = GetParam();
+  const int n = 48;
+  const multigrid::Solution solution = solved(c, n, 1e-8, true);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  const oracle::OracleScene scene = oracle::make_scene(c.scene, n, 0.0);
+  const oracle::State direct = oracle::newton(scene, std::string(name(c.model)), c.kappa, 0.2,
+                                              oracle::state_of(scene, solution), 8);
+  EXPECT_LT(oracle::difference(solution, direct).max, 1e-6) << "cells";
+}
+
+const auto case_name = [](const auto& info) { return info.param.name; };
+INSTANTIATE_TEST_SUITE_P(Scenes, Membrane, testing::ValuesIn(cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, DirectMembrane, testing::ValuesIn(cases()), case_name);
+
+TEST(Membranes, BadValuesAreRefusedByModelAndBound) {
+  auto message = [](Model model, double kappa, double eps) {
+    multigrid::WarpProblem problem = scenes::problem(s4, 32, kappa);
+    problem.material.model = model;
+    problem.material.eps = eps;
+    try {
+      (void)multigrid::solve(problem);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(message(Model::arap, HUGE_VAL, 0.2).find("kappa of model arap"), std::string::npos);
+  EXPECT_NE(message(Model::neohookean, 2e6, 0.2).find("at most 1e6"), std::string::npos);
+  EXPECT_NE(message(Model::arap, 1.0, 1.0).find("eps"), std::string::npos);
+}
+
+/// Eq. 8 with a kappa that stands for an inequality: no cell is folded, not even at a corner.
+class FoldFree : public testing::TestWithParam<std::pair<int, double>> {};
+
+TEST_P(FoldFree, ManyDiscsAndTurningDiscs) {
+  const auto [n, kappa] = GetParam();
+  for (const scenes::Scene& scene : {scenes::many_discs(), scenes::turning_discs()}) {
+    const multigrid::Solution solution = solved({"", scene, Model::arap, kappa}, n, 0.0);
+    // From 1e5 on the last digits may take more steps than there are.
+    if (kappa < 1e5) EXPECT_EQ(solution.report.status, multigrid::Status::converged) << scene.name;
+    EXPECT_EQ(solution.report.folds.folded_cells, 0) << scene.name;
+    EXPECT_GT(solution.report.folds.min_corner_J, 0.0) << scene.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arap, FoldFree, testing::Values(std::pair{48, 1e3}, std::pair{48, 1e6}));
+
+}  // namespace
+}  // namespace drumhead
