@@ -101,7 +101,9 @@ TEST_P(FoldFree, ManyDiscsAndTurningDiscs) {
   for (const scenes::Scene& scene : {scenes::many_discs(), scenes::turning_discs()}) {
     const multigrid::Solution solution = solved({"", scene, Model::arap, kappa}, n, 0.0);
     // From 1e5 on the last digits may take more steps than there are.
-    if (kappa < 1e5) EXPECT_EQ(solution.report.status, multigrid::Status::converged) << scene.name;
+    if (kappa < 1e5) {
+      EXPECT_EQ(solution.report.status, multigrid::Status::converged) << scene.name;
+    }
     EXPECT_EQ(solution.report.folds.folded_cells, 0) << scene.name;
     EXPECT_GT(solution.report.folds.min_corner_J, 0.0) << scene.name;
   }

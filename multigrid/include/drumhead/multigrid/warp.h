@@ -60,7 +60,7 @@ struct Solution;
 
 struct SolverOptions {
   Solver solver = Solver::gcr;
-  /// Conforming curves are hard, not exact, and need Solver::gcr.
+  /// Conforming curves are hard, not exact, and need Solver::gcr and a crpm or harmonic membrane.
   CurveMethod curve_method = CurveMethod::averaged;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
