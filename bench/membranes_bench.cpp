@@ -54,7 +54,8 @@ void fold_free() {
   std::puts(
       "| Eq. 8, eps .2 | kappa | lattice | status | Newton steps: all levels, finest | cycles "
       "there "
-      "| work units | seconds | product, ns per node | B/node | inverted at first, folded at the "
+      "| work units | seconds | product, ns per node | B/node | most inverted on the way, folded "
+      "at the "
       "end | least corner J |");
   std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|");
   for (const scenes::Scene& scene : {scenes::many_discs(), scenes::turning_discs()})

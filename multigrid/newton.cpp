@@ -380,7 +380,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     longest = longest == 1.0 && !shortened && n > 0 && rms > kBackAndForth * rms_before ? 0.5 : 1.0;
     rms_before = rms;
     if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
-    followed_ = relieved && step.step == 1.0 && (ends || norm_ < kFollowed * moved_norm_);
+    followed_ = relieved && !shortened && (ends || norm_ < kFollowed * moved_norm_);
     if (followed_) move_corners();
     if (shortened && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
