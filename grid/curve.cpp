@@ -174,6 +174,7 @@ std::vector<SegmentPair> matched(const CurvePair& pair) {
   check_chain(pair.name, "target", pair.target);
   std::vector<SegmentPair> out;
   if (pair.source.size() == pair.target.size()) {
+    out.reserve(pair.source.size());
     for (std::size_t n = 0; n < pair.source.size(); ++n)
       out.push_back({pair.source[n], pair.target[n]});
     return out;
