@@ -29,8 +29,8 @@ constexpr double kContent = 0.6, kStartContent = 0.3, kHarmonic = 0.05;
 // Exact constraints: no node moves further than this in the last step, in finest cells.
 constexpr double kExactMove = 1e-7;
 // Without the jump a linear system of larger theta costs more cycles than the steps it saves (S2,
-// kappa 100, 32²: 22 s with an exact Hessian, 11 s with 16, 14 s with 8).
-constexpr double kMostExactTheta = 16.0;
+// kappa 100, 32²: 1.1 s with 2, over ten times as much with 16, whose 400 cycles do not suffice).
+constexpr double kMostExactTheta = 2.0;
 // An exact row that is off by more than this many cells at the end could not be met.
 constexpr double kRowMet = 1e-3;
 constexpr std::size_t kSmallNodes = 20000;
@@ -148,6 +148,9 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = options.tolerance_cells;
+      // The moves of loosely solved steps say too little of pressures that are slow to settle.
+      newton_options.linear.content = newton_options.linear.reduction;
+      newton_options.expected_rates.clear();
     }
     if (level.solid.law.relief > T(0)) {
       newton_options.most_steps = kFoldSteps;

@@ -39,11 +39,12 @@ constexpr double kLeastFloor = 1e-3;
 // A full step is taken without asking the merit when the norm of all equations falls below this
 // share.
 constexpr double kSolves = 0.75;
-// The Hessian is too much clamped where a full step leaves more than kSlow of the residual, and
-// kModelError times what the linear solver left. Less clamping than that takes more cycles than it
-// saves steps (S4 kappa 10, 800²: 131 work units with theta growing at every full step, 62 so).
+// The Hessian is too much clamped where a full step leaves kModelError times what the linear solver
+// left and, where that was much, more than kSlow of the residual. Less clamping than that takes
+// more cycles than it saves steps (S4 kappa 10, 800²: 131 work units with theta growing at every
+// full step, 62 so).
 constexpr double kModelError = 2.0, kSlow = 0.5;
-// A full step this large beside the one before may well undo it.
+// A full step this large beside the one before may well undo it; two in a row do.
 constexpr double kBackAndForth = 0.9;
 // After a shortened step linear systems are solved to this residual at least. (Also where the norm
 // of all equations did not show a step to be good: S1 kappa 10, 400², 912 work units, 379 without.)
@@ -88,12 +89,14 @@ class Judge {
 
  private:
   /// Contraction expected of the next step: that of the same step on the level before, made worse
-  /// by as much as this step was worse than its own; without a model, that of this step.
+  /// by as much as this step was worse than its own; without a model, the worse of the
+  /// last two.
   double next_rate(double seen) {
     const std::vector<double>& expected = options_.expected_rates;
     const std::size_t n = report_.steps.size();  // this step is the n-th
     if (n > 1) report_.rates.push_back(seen);
-    double rate = seen;
+    double rate = std::max(seen, seen_before_);
+    seen_before_ = n > 1 ? seen : 0.0;
     if (n <= expected.size()) {
       rate = expected[n - 1];
       if (n > 1) rate *= std::max(1.0, seen / expected[n - 2]);
@@ -116,6 +119,7 @@ class Judge {
   const NewtonOptions& options_;
   NewtonReport& report_;
   int creeping_ = 0, settled_ = 0, unsolved_ = 0;
+  double seen_before_ = 0.0;
   bool trouble_ = false;
 };
 
@@ -349,6 +353,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
   double rms_before = 0.0, longest = 1.0;
+  int in_circles = 0;
   norm_ = moved_norm_ = force_norm(level_.nonlinear());
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
@@ -377,14 +382,18 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     if (ends && (!relieved || (followed_ && unfolded())) && !lower_floor()) return report;
     // A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
     // ends in the middle.
-    longest = longest == 1.0 && !shortened && n > 0 && rms > kBackAndForth * rms_before ? 0.5 : 1.0;
+    const bool accurate = linear.residual <= kCareful;
+    const bool undone = !accurate && !shortened && n > 0 && rms > kBackAndForth * rms_before;
+    in_circles = undone && longest == 1.0 ? in_circles + 1 : 0;
+    longest = in_circles >= 2 ? 0.5 : 1.0;
     rms_before = rms;
     if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
     followed_ = relieved && !shortened && (ends || norm_ < kFollowed * moved_norm_);
     if (followed_) move_corners();
     if (shortened && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
-    else if (step.step == 1.0 && norm_ > std::max(kSlow, kModelError * linear.residual) * norm)
+    else if (step.step == 1.0 &&
+             norm_ > std::max(accurate ? 0.0 : kSlow, kModelError * linear.residual) * norm)
       clamp.theta = std::min(clamp.theta * kGrow, kExactTheta);
   }
   report.status = Status::limit;
