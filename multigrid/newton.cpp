@@ -10,6 +10,8 @@
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
 
+#include "newton_judge.h"
+
 namespace drumhead::multigrid {
 namespace {
 
@@ -23,17 +25,6 @@ constexpr int kMedianSamples = 1 << 12;
 constexpr double kReliefGrows = 3.0, kMostRelief = 300.0, kFollowed = 0.3;
 // arap: kappa from which folded corners are not accepted.
 constexpr double kAsInequality = 1e3;
-// A linear solution this bad is not worth a step with an unclamped Hessian.
-constexpr double kStagnated = 0.8;
-// So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr, whose
-// cycles stop where Newton's method gains no more from them, were asked for a tenth.
-constexpr int kMostUnsolved = 3;
-constexpr double kUnsolved = 0.5;
-// Bounds of the contraction that a step is expected to have, and what is taken where none was seen.
-constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
-// So many steps in a row shorter than kCreep lead nowhere.
-constexpr double kCreep = 1e-2;
-constexpr int kMostCreeping = 5;
 // neohookean: no J of a solution is below this.
 constexpr double kLeastFloor = 1e-3;
 // A full step is taken without asking the merit when the norm of all equations falls below this
@@ -49,79 +40,6 @@ constexpr double kBackAndForth = 0.9;
 // After a shortened step linear systems are solved to this residual at least. (Also where the norm
 // of all equations did not show a step to be good: S1 kappa 10, 400², 912 work units, 379 without.)
 constexpr double kCareful = 0.1;
-
-/// Files the steps of a run and decides when it ends.
-class Judge {
- public:
-  Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
-
-  /// True if the run ends with this step; the report then has its status. `rounding`: moves below
-  /// it are noise.
-  bool ends_with(const NewtonStep& step, double rounding) {
-    const bool first = report_.steps.empty();
-    const NewtonStep before = first ? step : report_.steps.back();
-    report_.steps.push_back(step);
-    report_.change_rms += step.dx_rms_px;
-    report_.change_max += step.dx_max_px;
-
-    const bool full = step.step == 1.0;
-    creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
-    const bool gcr = options_.linear.solver == Solver::gcr;
-    const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
-    unsolved_ = solved ? 0 : unsolved_ + 1;
-    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
-        unsolved_ >= kMostUnsolved)
-      return end(Status::stalled);
-    // After a larger theta a step converges more slowly: no contraction is seen from it.
-    const bool comparable = step.theta >= before.theta;
-    const bool seen = !first && full && comparable && before.step == 1.0;
-    const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
-    const double left = std::max(rate, step.residual) / (1.0 - rate);
-    report_.error_rms = left * step.dx_rms_px;
-    report_.error_max = left * step.dx_max_px;
-    // Where a step was shortened or theta lowered, one small step may be chance.
-    trouble_ = trouble_ || !full || !comparable;
-    settled_ = full && comparable && solved && small(step, rounding) ? settled_ + 1 : 0;
-    const bool enough = int(report_.steps.size()) >= options_.least_steps;
-    if (enough && settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
-    return full && step.dx_rms_px <= rounding && end(Status::stalled);
-  }
-
- private:
-  /// Contraction expected of the next step: that of the same step on the level before, made worse
-  /// by as much as this step was worse than its own; without a model, the worse of the
-  /// last two.
-  double next_rate(double seen) {
-    const std::vector<double>& expected = options_.expected_rates;
-    const std::size_t n = report_.steps.size();  // this step is the n-th
-    if (n > 1) report_.rates.push_back(seen);
-    double rate = std::max(seen, seen_before_);
-    seen_before_ = n > 1 ? seen : 0.0;
-    if (n <= expected.size()) {
-      rate = expected[n - 1];
-      if (n > 1) rate *= std::max(1.0, seen / expected[n - 2]);
-    }
-    return std::clamp(rate, kLeastRate, kMostRate);
-  }
-
-  bool small(const NewtonStep& step, double rounding) const {
-    double wanted = options_.tolerance_rms;
-    if (options_.share_of_change > 0.0)
-      wanted = std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
-    return report_.error_rms <= wanted &&
-           (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
-  }
-  bool end(Status status) {
-    report_.status = status;
-    return true;
-  }
-
-  const NewtonOptions& options_;
-  NewtonReport& report_;
-  int creeping_ = 0, settled_ = 0, unsolved_ = 0;
-  double seen_before_ = 0.0;
-  bool trouble_ = false;
-};
 
 }  // namespace
 
@@ -334,7 +252,7 @@ LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
   const bool pressure = level_.nonlinear();
   const int top = hierarchy_.index_of(level_);
   LinearReport linear = solve_linear(hierarchy_, top, pressure, norm, options, meter_);
-  if (linear.residual > kStagnated && clamp.theta > 1.0) {
+  if (linear.residual > Judge::kStagnated && clamp.theta > 1.0) {
     // Indefinite far from a solution: a smaller theta is closer to the positive definite Hessian.
     clamp.theta = clamp.most = std::max(1.0, clamp.theta / (kGrow * kGrow));
     set_clamp(clamp.theta);

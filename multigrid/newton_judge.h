@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// When a run of Newton's method ends: its own header because the rules are many, and each was
+// learnt from a scene.
+#include <algorithm>
+
+#include "newton.h"
+
+namespace drumhead::multigrid {
+
+/// Files the steps of a run and decides when it ends.
+class Judge {
+ public:
+  /// A linear solution this bad is not worth a step with an unclamped Hessian.
+  static constexpr double kStagnated = 0.8;
+
+  Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
+
+  /// True if the run ends with this step; the report then has its status. `rounding`: moves below
+  /// it are noise.
+  bool ends_with(const NewtonStep& step, double rounding) {
+    const bool first = report_.steps.empty();
+    const NewtonStep before = first ? step : report_.steps.back();
+    report_.steps.push_back(step);
+    report_.change_rms += step.dx_rms_px;
+    report_.change_max += step.dx_max_px;
+
+    const bool full = step.step == 1.0;
+    creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
+    const bool gcr = options_.linear.solver == Solver::gcr;
+    const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
+    unsolved_ = solved ? 0 : unsolved_ + 1;
+    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
+        unsolved_ >= kMostUnsolved)
+      return end(Status::stalled);
+    // After a larger theta a step converges more slowly: no contraction is seen from it.
+    const bool comparable = step.theta >= before.theta;
+    const bool seen = !first && full && comparable && before.step == 1.0;
+    const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
+    const double left = std::max(rate, step.residual) / (1.0 - rate);
+    report_.error_rms = left * step.dx_rms_px;
+    report_.error_max = left * step.dx_max_px;
+    // Where a step was shortened or theta lowered, one small step may be chance.
+    trouble_ = trouble_ || !full || !comparable;
+    settled_ = full && comparable && solved && small(step, rounding) ? settled_ + 1 : 0;
+    const bool enough = int(report_.steps.size()) >= options_.least_steps;
+    if (enough && settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
+    return full && step.dx_rms_px <= rounding && end(Status::stalled);
+  }
+
+ private:
+  // So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr,
+  // whose cycles stop where Newton's method gains no more from them, were asked for a tenth.
+  static constexpr int kMostUnsolved = 3;
+  static constexpr double kUnsolved = 0.5;
+  // Bounds of the contraction that a step is expected to have, and what is taken where none was
+  // seen.
+  static constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
+  // So many steps in a row shorter than kCreep lead nowhere.
+  static constexpr double kCreep = 1e-2;
+  static constexpr int kMostCreeping = 5;
+
+  /// Contraction expected of the next step: that of the same step on the level before, made worse
+  /// by as much as this step was worse than its own; without a model, the worse of the
+  /// last two.
+  double next_rate(double seen) {
+    const std::vector<double>& expected = options_.expected_rates;
+    const std::size_t n = report_.steps.size();  // this step is the n-th
+    if (n > 1) report_.rates.push_back(seen);
+    double rate = std::max(seen, seen_before_);
+    seen_before_ = n > 1 ? seen : 0.0;
+    if (n <= expected.size()) {
+      rate = expected[n - 1];
+      if (n > 1) rate *= std::max(1.0, seen / expected[n - 2]);
+    }
+    return std::clamp(rate, kLeastRate, kMostRate);
+  }
+
+  bool small(const NewtonStep& step, double rounding) const {
+    double wanted = options_.tolerance_rms;
+    if (options_.share_of_change > 0.0)
+      wanted = std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
+    return report_.error_rms <= wanted &&
+           (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
+  }
+  bool end(Status status) {
+    report_.status = status;
+    return true;
+  }
+
+  const NewtonOptions& options_;
+  NewtonReport& report_;
+  int creeping_ = 0, settled_ = 0, unsolved_ = 0;
+  double seen_before_ = 0.0;
+  bool trouble_ = false;
+};
+
+}  // namespace drumhead::multigrid
