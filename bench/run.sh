@@ -35,7 +35,7 @@ sh tests/install.sh >&2
 folder=build/bench
 cmake --preset release -B $folder -DDRUMHEAD_BUILD_BENCH=ON -DDRUMHEAD_BUILD_TESTS=OFF \
   -DDRUMHEAD_BUILD_DRIVER=OFF >&2
-cmake --build $folder --target kernels_bench resample_bench solve_bench rates_bench \
+cmake --build $folder --target kernels_bench resample_bench solve_bench curves_bench rates_bench \
   membranes_bench $direct >&2
 
 # libgomp's threads otherwise spin between loops, on whatever else the machine does.
@@ -53,6 +53,8 @@ echo
 $folder/bench/resample_bench
 echo
 $folder/bench/solve_bench $large
+echo
+$folder/bench/curves_bench
 echo
 $folder/bench/rates_bench
 echo
