@@ -24,7 +24,7 @@ template <class T>
 void apply_hessian(const Membrane<T>& membrane, const Unknowns<const T>& d, const Unknowns<T>& out);
 
 /// r = f − H d without the curve forces (which an f that carries Wᵀ dq already has; see cuts.h). r
-/// may alias f.
+/// may alias f where the membrane has no special cells.
 template <class T>
 void linear_residual(const Membrane<T>& membrane, const Unknowns<const T>& f,
                      const Unknowns<const T>& d, const Unknowns<T>& r);

@@ -70,7 +70,8 @@ struct SolverOptions {
   /// A solution on the same lattice to go on from, where curves or material have changed a little
   /// or curves were taken away: Newton on the finest lattice alone, to a tenth of the
   /// discretisation error that this solution was estimated to have if no tolerance is given. Where
-  /// that does not converge, the scene is solved from the beginning.
+  /// that does not converge, and with exact rows or conforming curves, the scene is solved from the
+  /// beginning.
   const Solution* start = nullptr;
   int threads = 0;                                ///< OpenMP threads; 0: as OpenMP decides
   std::function<void(const Progress&)> progress;  ///< optional
