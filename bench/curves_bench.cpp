@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The two ways to meet curves on the roundabout (S2), against its exact radial solution: error,
-// folds, steps and time by lattice, as a Markdown table. One thread, default tolerance, best of
-// three.
+// folds, steps and time by lattice, as rows of JSON (results.h). One thread, default tolerance,
+// best of three.
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 
+#include "solution_values.h"
 #include "support/radial_reference.h"
 #include "support/scene_problem.h"
 
 namespace drumhead::bench {
 namespace {
 
-constexpr double kPicture = 1000.0;  // px of the unit square
 constexpr int kRepeats = 3;
 
 struct Error {
@@ -39,7 +39,7 @@ Error error_of(const multigrid::Solution& solution, const oracle::RadialReferenc
   return error;
 }
 
-void run(double kappa, multigrid::CurveMethod method, const char* name, int n) {
+void run(double kappa, multigrid::CurveMethod method, int n, Results& results) {
   const multigrid::WarpProblem problem =
       scenes::problem(scenes::roundabout(90.0, scenes::kStudyOffset), n, kappa);
   multigrid::SolverOptions options;
@@ -49,36 +49,27 @@ void run(double kappa, multigrid::CurveMethod method, const char* name, int n) {
   double seconds = 1e300;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     multigrid::Solution solution = multigrid::solve(problem, options);
-    const double took = solution.report.cut_seconds + solution.report.solve_seconds;
-    if (took >= seconds) continue;
-    seconds = took;
+    if (seconds_of(solution) >= seconds) continue;
+    seconds = seconds_of(solution);
     best = std::move(solution);
   }
-  const multigrid::SolveReport& report = best.report;
   const Error error = error_of(best, {.22, .40, std::acos(0.0), kappa});
-  int cycles = 0;
-  for (const multigrid::NewtonStep& step : report.levels.back().newton) cycles += step.krylov;
-  std::printf("| %g | %s | %d² | %.3f | %.2f | %.3f | %d | %zu (%d) | %.0f | %.0f (%.1f) | %s |\n",
-              kappa, name, n, error.rms, error.max, kPicture * report.discretisation_rms_px,
-              report.folds.folded_cells, report.levels.back().newton.size(), cycles,
-              seconds / report.work_unit_seconds, 1e3 * seconds, 1e3 * report.cut_seconds,
-              multigrid::name(report.status));
-  std::fflush(stdout);
+  results.row("curves", joined({{"scene", "S2"},
+                                {"kappa", kappa},
+                                {"curves", multigrid::name(method)},
+                                {"n", n},
+                                {"rms_px", error.rms},
+                                {"max_px", error.max}},
+                               values_of(best)));
 }
 
 }  // namespace
 }  // namespace drumhead::bench
 
-int main() {
+int main(int argc, char** argv) {
   using drumhead::multigrid::CurveMethod;
-  std::puts(
-      "| kappa/mu | curves | lattice | RMS, px | largest, px | reported RMS, px | folded cells | "
-      "Newton steps (cycles) | work units | ms (cutting) | status |");
-  std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
+  drumhead::bench::Results results(argc, argv);
   for (const double kappa : {1.0, 10.0})
     for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming})
-      for (const int n : {50, 100, 200, 400})
-        drumhead::bench::run(kappa, method,
-                             method == CurveMethod::averaged ? "averaged" : "conforming", n);
-  return 0;
+      for (const int n : {50, 100, 200, 400}) drumhead::bench::run(kappa, method, n, results);
 }

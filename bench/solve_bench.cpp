@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The whole solve on the study scenes (curves clear of lattice lines, picture of 1000 px): work
-// units, time, memory and errors, as a Markdown table.
+// units, time, memory and errors, as rows of JSON (results.h).
 //   solve_bench [--large] [--threads N]      --large: also 1600² and 3200²
 #include <cmath>
 #include <cstdio>
@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "solution_values.h"
 #include "support/scene_problem.h"
 
 namespace drumhead::bench {
 namespace {
 
-constexpr double kPicture = 1000.0;  // px of the unit square
 constexpr int kMostForError = 800;
 
 struct Case {
@@ -46,36 +46,16 @@ double true_error(const multigrid::WarpProblem& problem, const multigrid::Soluti
   return difference(solution, multigrid::solve(problem, options));
 }
 
-void run(const Case& c, int n, int threads) {
+void run(const Case& c, int n, int threads, Results& results) {
   const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
   const multigrid::SolverOptions options{.threads = threads};
   const multigrid::Solution solution = multigrid::solve(problem, options);
-  const multigrid::SolveReport& report = solution.report;
-  std::size_t newton = 0;
-  int cycles = 0;
-  for (const multigrid::NewtonStep& step : report.levels.back().newton) cycles += step.krylov;
-  newton = report.levels.back().newton.size();
-  double gap = 0.0, length = 0.0;
-  for (const multigrid::CurveReport& curve : report.curves) {
-    gap += curve.length_px * curve.gap_rms_px * curve.gap_rms_px;
-    length += curve.length_px;
-  }
-  gap = kPicture * std::sqrt(gap / length);
-  const double discretisation = kPicture * report.discretisation_rms_px;
-  if (c.scene.kappa_mask)
-    std::printf("| %s mask | %d² ", c.scene.name.c_str(), n);
-  else
-    std::printf("| %s kappa %g | %d² ", c.scene.name.c_str(), c.kappa, n);
-  std::printf("| %s | %.0f | %.3f + %.3f | %zu | %d | %.0f | %.3f | %.3f | %.3f |",
-              multigrid::name(report.status), report.work_units, report.cut_seconds,
-              report.solve_seconds, newton, cycles,
-              double(report.solver_bytes) / double(solution.lattice.nodes()), gap, discretisation,
-              kPicture * report.algebraic_rms_px / discretisation);
+  Json row = joined(joined(keys_of(c.scene, c.kappa), {{"n", n}, {"threads", threads}}),
+                    values_of(solution));
   if (n <= kMostForError)
-    std::printf(" %.3f |\n", true_error(problem, solution, options) / discretisation);
-  else
-    std::printf(" – |\n");
-  std::fflush(stdout);
+    row["true_share"] =
+        true_error(problem, solution, options) / (kPicture * solution.report.discretisation_rms_px);
+  results.row("solve", row);
 }
 
 }  // namespace
@@ -96,14 +76,10 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  std::puts(
-      "| scene | lattice | status | work units | seconds, cut + solve | Newton steps | "
-      "cycles | B/node | curve gap, px | discretisation error, px | algebraic error, "
-      "estimated share of it | true share |");
-  std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|");
+  bench::Results results(argc, argv);
   std::vector<int> sizes{100, 200, 400, 800};
   if (large) sizes.insert(sizes.end(), {1600, 3200});
   for (const bench::Case& c : bench::cases())
-    for (const int n : sizes) bench::run(c, n, threads);
+    for (const int n : sizes) bench::run(c, n, threads, results);
   return 0;
 }
