@@ -18,10 +18,11 @@ mkdir -p "$results"
 [ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
 
 for scene in "$@"; do
-  for needed in "$drumhead" "$examples/$scene.toml" "$examples/$scene"*.svg; do
+  drawing=$examples/$(sed -n 's/^picture = "\(.*\)\.svg".*/\1/p' "$examples/$scene.toml")
+  for needed in "$drumhead" "$examples/$scene.toml" "$drawing"*.svg; do
     if [ ! -e "$results/$scene.png" ] || [ "$needed" -nt "$results/$scene.png" ]; then
       echo "Warping $examples/$scene.toml"
-      rsvg-convert --output "$results/$scene-before.png" "$examples/$scene.svg"
+      rsvg-convert --output "$results/$scene-before.png" "$drawing.svg"
       # Exit code 1: not converged, and said so; its picture is there to be looked at all the same.
       "$drumhead" warp "$examples/$scene.toml" || [ $? = 1 ]
       break

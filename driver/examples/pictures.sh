@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws driver/examples/pictures again, which the README shows: 640 pixels wide, 256 colours.
+# Draws driver/examples/pictures again, which the READMEs show: 640 pixels wide, 256 colours.
 #     sh driver/examples/pictures.sh                 all scenes
 #     sh driver/examples/pictures.sh face sponge     only these
 # Wants the Debian package pngquant beside those of driver/demo.sh, which it runs first.
@@ -21,7 +21,13 @@ small() {
   rm build/demo/small.png
 }
 for scene in "$@"; do
-  small "build/demo/$scene-before.png" "$examples/pictures/$scene-before.png"
+  # A scene that has no drawing of its own shares the picture before with the one whose it is.
+  [ ! -e "$examples/$scene.svg" ] ||
+    small "build/demo/$scene-before.png" "$examples/pictures/$scene-before.png"
   small "build/demo/$scene.png" "$examples/pictures/$scene-after.png"
+  for more in checkerboard jacobian; do
+    ! grep -q "pictures/$scene-$more.png" "$examples/README.md" ||
+      small "build/demo/$scene-$more.png" "$examples/pictures/$scene-$more.png"
+  done
 done
 ls -l "$examples/pictures"
