@@ -30,15 +30,18 @@ target_link_libraries(drumhead_conforming_oracle
 drumhead_test(NAME oracle_conforming_test
   SOURCES oracle_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
-foreach(name exact default masks nested restart stiff)
+foreach(name exact default masks nested restart)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
-foreach(name degenerate memory)
+foreach(name degenerate stiff)
   drumhead_test(NAME stability_${name}_test
-    SOURCES stability_${name}_test.cpp LINK drumhead::multigrid LABEL numeric)
+    SOURCES stability_${name}_test.cpp support/hard_cases.cpp support/scene_problem.cpp
+    LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
+drumhead_test(NAME stability_memory_test
+  SOURCES stability_memory_test.cpp LINK drumhead::multigrid LABEL numeric)
 drumhead_test(NAME stability_conforming_test
   SOURCES stability_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
