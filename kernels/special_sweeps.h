@@ -90,6 +90,13 @@ void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
   }
 }
 
+/// visit(border) for the borders of regular cells of row j with parts.
+template <class T, class F>
+void for_borders(const SpecialCells<T>& cells, int j, F&& visit) {
+  for (int b = cells.border_begin[std::size_t(j)]; b < cells.border_begin[std::size_t(j) + 1]; ++b)
+    visit(cells.border[std::size_t(b)]);
+}
+
 /// Row of part p of special cell (i, j), times d.
 template <class T>
 T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p, int i, int j) {
@@ -101,8 +108,12 @@ T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p, int 
   sum -= (row.compliance + row.jumps) * d.listed[p];
   if (row.jumps == T(0)) return sum;
   const std::vector<int>& begin = rows.cells().neighbour_begin;
-  for (int k = begin[std::size_t(p)]; k < begin[std::size_t(p) + 1]; ++k)
-    sum += rows.jump(k) * d.listed[rows.cells().neighbour[std::size_t(k)]];
+  for (int k = begin[std::size_t(p)]; k < begin[std::size_t(p) + 1]; ++k) {
+    const PartNeighbour& other = rows.cells().neighbour[std::size_t(k)];
+    constexpr int kEast[] = {0, 1, 0, -1}, kNorth[] = {-1, 0, 1, 0};
+    sum += rows.jump(k) * (other.part >= 0 ? d.listed[other.part]
+                                           : d.p.at(i + kEast[other.side], j + kNorth[other.side]));
+  }
   return sum;
 }
 
@@ -120,6 +131,11 @@ void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
       out[p] = f ? f->listed[p] - product : product;
     }
   }
+  // The vectorised kernels took dP of special cells as 0.
+  for_borders(cells, j, [&](const PartBorder& border) {
+    const T jump = rows.jump(border.neighbour) * d.listed[border.part];
+    out_p.half[border.column & 1][border.column >> 1] += f ? -jump : jump;
+  });
 }
 
 /// Gauss–Seidel on the near nodes of row j, one after the other.
@@ -196,33 +212,48 @@ void keep_near_row(const SpecialRows<T>& rows, const Unknowns<T>& d, int parity,
 }
 
 /// The same for a sweep over the volume rows of the cells of columns `parity` in cell row j, which
-/// share no node: the corners of special cells keep their values, known nodes their 0. `kept`:
-/// eight values a cell.
+/// share no node: the corners of special cells keep their values, known nodes their 0. The sweep
+/// takes dP of special cells as 0; meanwhile f carries the jump terms that this leaves out. `kept`:
+/// eight values a special cell, one a border.
 template <class T, class F>
-void keep_special_row(const SpecialRows<T>& rows, const Unknowns<T>& d, int parity, int j, T* kept,
-                      F&& sweep) {
+void keep_special_row(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
+                      int parity, int j, T* kept, F&& sweep) {
   const SpecialCells<T>& cells = rows.cells();
-  auto each = [&](auto&& visit) {
+  auto each = [&](auto&& visit, auto&& visit_border) {
     T* slot = kept;
     for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
       if (const int i = cells.column[std::size_t(n)]; (i & 1) == parity) {
         visit(slot, i);
         slot += 8;
       }
+    int before = -1;
+    for_borders(cells, j, [&](const PartBorder& border) {
+      if ((border.column & 1) != parity) return;
+      visit_border(*slot++, border, border.column != before);
+      before = border.column;
+    });
   };
-  each([&](T* slot, int i) {
+  auto keep = [&](T* slot, int i) {
     for (int c = 0; c < 4; ++c) {
       slot[c] = d.x.at(i + (c & 1), j + (c >> 1));
       slot[4 + c] = d.y.at(i + (c & 1), j + (c >> 1));
     }
+  };
+  each(keep, [&](T& slot, const PartBorder& border, bool) {
+    T& volume = f.p.at(border.column, j);
+    slot = volume;
+    volume -= rows.jump(border.neighbour) * d.listed[border.part];
   });
   sweep();
-  each([&](const T* slot, int i) {
+  auto restore = [&](const T* slot, int i) {
     for (int c = 0; c < 4; ++c) {
       d.x.at(i + (c & 1), j + (c >> 1)) = slot[c];
       d.y.at(i + (c & 1), j + (c >> 1)) = slot[4 + c];
     }
     d.p.at(i, j) = T(0);
+  };
+  each(restore, [&](const T& slot, const PartBorder& border, bool first) {
+    if (first) f.p.at(border.column, j) = slot;
   });
   for (const int row : {j, j + 1})
     for (const int i : rows.loose(row)) d.x.at(i, row) = d.y.at(i, row) = T(0);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <tuple>
 
 #include "conforming_visits.h"
 
@@ -38,52 +40,103 @@ void add_cell(const grid::ConformingCells& from, int c, int i, int j, T spacing,
   to.triangle_begin.push_back(int(to.triangle.size()));
 }
 
-/// Parts of two cells with a common piece of a side. A piece between two held nodes may be a
-/// curve's and joins nothing.
-template <class T>
-void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>& to) {
-  struct Piece {
-    std::int64_t a, b;
-    int part;
-    auto operator<=>(const Piece&) const = default;
-  };
-  std::vector<Piece> pieces;
-  const std::int64_t nodes = std::int64_t(from.nx + 1) * (from.ny + 1);
-  for_special(from, [&](int c, int i, int j) {
-    auto number = [&](int code) {
-      if (code >= kernels::kFirstCrossing) return nodes + code - kernels::kFirstCrossing;
-      return std::int64_t(j + (code >> 1)) * (from.nx + 1) + i + (code & 1);
-    };
-    auto held = [&](int code) {
-      return code >= kernels::kFirstCrossing ||
-             from.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
-    };
-    for_parts(from, c, [&](int p) {
-      const int first = from.part_node_begin[std::size_t(p)],
-                end = from.part_node_begin[std::size_t(p) + 1];
-      for (int n = first; n < end; ++n) {
-        const int a = from.part_node[std::size_t(n)],
-                  b = from.part_node[std::size_t(n + 1 < end ? n + 1 : first)];
-        if (held(a) && held(b)) continue;
-        pieces.push_back({std::min(number(a), number(b)), std::max(number(a), number(b)), p});
+/// A piece of a special cell's side between two nodes, and the part whose boundary it belongs to.
+struct Piece {
+  std::int64_t a, b;  // numbers of the nodes
+  int part, vertex, i, j;
+  auto operator<=>(const Piece&) const = default;
+};
+/// A part and what it borders on; `i`, `j`: the regular cell, if that is one.
+struct Link {
+  int part;
+  kernels::PartNeighbour other;
+  int i = 0, j = 0;
+  auto order() const { return std::tuple(part, other.vertex); }
+};
+
+/// visit(part, vertex of its boundary, code there, code at the next one)
+template <class F>
+void for_sides(const grid::ConformingCells& cells, int c, F&& visit) {
+  for_parts(cells, c, [&](int p) {
+    const int first = cells.part_node_begin[std::size_t(p)],
+              end = cells.part_node_begin[std::size_t(p) + 1];
+    for (int n = first; n < end; ++n)
+      visit(p, n, cells.part_node[std::size_t(n)],
+            cells.part_node[std::size_t(n + 1 < end ? n + 1 : first)]);
+  });
+}
+
+/// Parts beside regular cells.
+void list_borders(const grid::ConformingCells& cells, std::vector<Link>& links) {
+  // Sides of the cell from corner to corner, counter-clockwise: 00, 10, 11, 01.
+  constexpr std::array<std::array<int, 2>, 4> kSide{{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
+  constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};
+  for_special(cells, [&](int c, int i, int j) {
+    for_sides(cells, c, [&](int p, int n, int a, int b) {
+      for (std::size_t side = 0; side < 4; ++side) {
+        const int x = i + kEast[side], y = j + kNorth[side];
+        if (kSide[side] == std::array{a, b} && x >= 0 && y >= 0 && x < cells.nx && y < cells.ny &&
+            cells.find_cell(x, y) < 0)
+          links.push_back({p, {-1, n, int(side)}, x, y});
       }
     });
   });
+}
+
+/// Parts of two cells with a common piece of a side. A piece between two held nodes may be a
+/// curve's and joins nothing.
+void list_common_pieces(const grid::ConformingCells& cells, std::vector<Link>& links) {
+  std::vector<Piece> pieces;
+  const std::int64_t nodes = std::int64_t(cells.nx + 1) * (cells.ny + 1);
+  for_special(cells, [&](int c, int i, int j) {
+    auto number = [&](int code) {
+      if (code >= kernels::kFirstCrossing) return nodes + code - kernels::kFirstCrossing;
+      return std::int64_t(j + (code >> 1)) * (cells.nx + 1) + i + (code & 1);
+    };
+    auto held = [&](int code) {
+      return code >= kernels::kFirstCrossing ||
+             cells.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
+    };
+    for_sides(cells, c, [&](int p, int n, int a, int b) {
+      if (held(a) && held(b)) return;
+      const auto [low, high] = std::minmax({number(a), number(b)});
+      pieces.push_back({low, high, p, n, i, j});
+    });
+  });
   std::ranges::sort(pieces);
-  std::vector<std::array<int, 2>> pairs;
-  for (std::size_t n = 0; n + 1 < pieces.size(); ++n)
-    if (pieces[n].a == pieces[n + 1].a && pieces[n].b == pieces[n + 1].b) {
-      pairs.push_back({pieces[n].part, pieces[n + 1].part});
-      pairs.push_back({pieces[n + 1].part, pieces[n].part});
-    }
-  std::ranges::sort(pairs);
-  to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
-  for (const auto& [part, other] : pairs) {
-    ++to.neighbour_begin[std::size_t(part) + 1];
-    to.neighbour.push_back(other);
+  auto side = [](const Piece& own, const Piece& other) {
+    return own.j != other.j ? (own.j < other.j ? 2 : 0) : (own.i < other.i ? 1 : 3);
+  };
+  for (std::size_t n = 0; n + 1 < pieces.size(); ++n) {
+    const Piece &one = pieces[n], &two = pieces[n + 1];
+    if (one.a != two.a || one.b != two.b) continue;
+    links.push_back({one.part, {two.part, one.vertex, side(one, two)}});
+    links.push_back({two.part, {one.part, two.vertex, side(two, one)}});
   }
-  for (std::size_t p = 1; p < to.neighbour_begin.size(); ++p)
-    to.neighbour_begin[p] += to.neighbour_begin[p - 1];
+}
+
+template <class T>
+void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>& to) {
+  std::vector<Link> links;
+  list_borders(from, links);
+  list_common_pieces(from, links);
+  std::ranges::sort(links, {}, &Link::order);
+  to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
+  std::vector<std::array<int, 4>> borders;
+  for (const Link& link : links) {
+    ++to.neighbour_begin[std::size_t(link.part) + 1];
+    if (link.other.part < 0)
+      borders.push_back({link.j, link.i, link.part, int(to.neighbour.size())});
+    to.neighbour.push_back(link.other);
+  }
+  std::ranges::sort(borders);
+  to.border_begin.assign(std::size_t(from.ny) + 1, 0);
+  for (const auto& [row, column, part, neighbour] : borders) {
+    ++to.border_begin[std::size_t(row) + 1];
+    to.border.push_back({column, part, neighbour});
+  }
+  for (std::vector<int>* begin : {&to.neighbour_begin, &to.border_begin})
+    std::partial_sum(begin->begin(), begin->end(), begin->begin());
 }
 
 template <class T>
@@ -124,7 +177,8 @@ template <class T>
 ConformingLevel<T>::ConformingLevel(grid::ConformingCells from, T spacing)
     : geometry(std::move(from)),
       cells(special_cells(geometry, spacing)),
-      pressure(cells.area.size(), T(0)) {}
+      pressure(cells.area.size(), T(0)),
+      regions(geometry, cells) {}
 
 template <class T>
 void ConformingLevel<T>::retarget(const grid::ConformingCells& other, T spacing) {

@@ -11,6 +11,8 @@
 #include <drumhead/grid/field.h>
 #include <drumhead/kernels/special.h>
 
+#include "conforming_regions.h"
+
 namespace drumhead::multigrid {
 
 template <class T>
@@ -20,6 +22,7 @@ struct ConformingLevel {
   kernels::SpecialRows<T> rows;
   kernels::SpecialTransfer<T> to_coarse;  ///< empty on the coarsest level
   std::vector<T> pressure;                ///< state: P per part
+  Regions regions;                        ///< whose mean pressures cycles set
 
   /// `spacing`: side of a cell of the level in finest cells.
   ConformingLevel(grid::ConformingCells cells, T spacing);

@@ -14,10 +14,6 @@ namespace {
 // S2 .050/.051/.055/.066 at .25/.5/1/2, S4 .083/.084/.093/.13; without it S2 diverges (48 times a
 // cycle, kappa 1e4: 4e6 times).
 constexpr double kPressureJump = 0.4;
-// The same along curves that the lattice conforms to, in shares of the parts' own diagonals: S2,
-// kappa 10, 64²: a factor of 2.1 per F-cycle without, .88 with .5; at 4 too stiff (S4, kappa
-// 100: 1.6).
-constexpr double kPartJump = 0.5;
 // The power method sees the largest eigenvalue from below, on the coarser levels.
 constexpr int kPowerSteps = 8;
 constexpr double kPowerMargin = 1.3;
@@ -35,8 +31,10 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
     hierarchy[l].clamp_width = clamp_width_;
     hierarchy[l].pressure_jump = T(kPressureJump / hierarchy.traits().stiffest);
   }
-  for (int l = top; l < hierarchy.size() && hierarchy.conforming(); ++l)
-    hierarchy[l].conforming->rows.linearise(system(l).membrane, T(l > top ? kPartJump : 0.0));
+  for (int l = top; l < hierarchy.size() && hierarchy.conforming(); ++l) {
+    hierarchy[l].conforming->rows.linearise(system(l).membrane);
+    if (pressure) hierarchy[l].conforming->regions.prepare(hierarchy[l].membrane());
+  }
   if (pressure && kernels::isotropic(hierarchy.traits().model)) prepare_relaxation();
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
@@ -98,8 +96,12 @@ template <class T>
 void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
   Level<T>& level = hierarchy_[l];
   if (from_zero) std::ranges::fill(level.dq, T(0));
+  Regions* regions = pressure_ && level.conforming ? &level.conforming->regions : nullptr;
+  if (regions && l == top_) regions->keep_sums(level.f.view());
+  if (regions && l > top_ && from_zero) regions->remove_sums(level.membrane(), level.f.view());
   if (l + 1 == hierarchy_.size()) {
     bottom_.solve(level);
+    if (regions) regions->set_means(level.membrane(), level.d.view());
     if (l == top_)
       kernels::add_curve_force(level.cuts.view(T(0)), level.dq.data(), T(1), level.f.view());
     return;
@@ -110,6 +112,7 @@ void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
   if (kind == CycleKind::f && l + 2 < hierarchy_.size()) descend(l + 1, CycleKind::v, false);
   prolong_cuts(l);
   relax_up(l);
+  if (regions) regions->set_means(level.membrane(), level.d.view());
 }
 
 /// Relaxation, then restriction of the residual.

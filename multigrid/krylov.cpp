@@ -29,7 +29,7 @@ class Gcr {
         cycle_(hierarchy, top, pressure, Cycle<T>::kDefinite) {
     if (!level_.conforming) return;
     special_ = level_.conforming->rows;  // the cycle has them with its own clamp
-    special_.linearise(membrane(), T(0));
+    special_.linearise(membrane());
   }
 
   /// Goes on from the level's d, dq, whose right-hand side was f − Wᵀ dq; `start`: norm of that

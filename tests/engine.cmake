@@ -34,7 +34,7 @@ drumhead_test(NAME multigrid_split_test SOURCES multigrid_split_test.cpp
   LINK drumhead::multigrid LABEL unit)
 target_include_directories(multigrid_split_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
 # The private headers of multigrid/, whose levels make special cells for the kernels.
-foreach(name conforming conforming_cycle)
+foreach(name conforming conforming_cycle regions)
   drumhead_test(NAME multigrid_${name}_test
     SOURCES multigrid_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL unit)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Kernels on lattices that conform to curves: force, product and energy against an energy that is
 // summed up here from the geometry alone, and its differences.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "support/conforming_scene.h"
@@ -148,6 +150,74 @@ TEST(ConformingKernels, EnergySumsAreThoseOfTheGeometry) {
     EXPECT_NEAR(sums.volume, expected.volume, 1e-10);
     EXPECT_NEAR(sums.volume_merit, expected.volume, 1e-10);  // kappa ≤ 100 mu
   }
+}
+
+/// The jump term from the geometry: the volume rows' matrix.
+Eigen::MatrixXd jump_term(Scene& scene, double sigma) {
+  constexpr double kBetweenParts = 4.0;
+  const grid::ConformingCells& cells = scene.cells();
+  struct Element {
+    int cell, part;  // part −1: a regular cell
+    Point from, to;
+    bool held;
+  };
+  std::map<std::pair<int, int>, std::vector<Element>> pieces;
+  auto add = [&](int special, int i, int j, int part, const std::vector<int>& codes) {
+    auto number = [&](int code) {
+      return code < 4 ? (j + (code >> 1)) * (kNx + 1) + i + (code & 1) : 1000 + code;
+    };
+    auto held = [&](int code) { return code >= 4 || scene.known(i + (code & 1), j + (code >> 1)); };
+    for (std::size_t n = 0; n < codes.size(); ++n) {
+      const int a = codes[n], b = codes[(n + 1) % codes.size()];
+      pieces[std::minmax({number(a), number(b)})].push_back(
+          {j * kNx + i, part, deformed(scene, special, i, j, a), deformed(scene, special, i, j, b),
+           held(a) && held(b)});
+    }
+  };
+  std::vector<int> row(std::size_t(kNx * kNy), -1);  // of regular cells
+  int first_part = 0;
+  for (int j = 0; j < kNy; ++j)
+    for (int i = 0; i < kNx; ++i) {
+      const int c = cells.find_cell(i, j);
+      if (c < 0) {
+        row[std::size_t(j * kNx + i)] = first_part++;
+        add(-1, i, j, -1, {0, 1, 3, 2});
+        continue;
+      }
+      for (int p = cells.part_begin[std::size_t(c)]; p < cells.part_begin[std::size_t(c) + 1]; ++p)
+        add(c, i, j, p,
+            {cells.part_node.begin() + cells.part_node_begin[std::size_t(p)],
+             cells.part_node.begin() + cells.part_node_begin[std::size_t(p) + 1]});
+    }
+  const int rows = first_part + cells.parts();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, rows);
+  for (const auto& [ends, elements] : pieces) {
+    if (elements.size() != 2 || elements[0].cell == elements[1].cell) continue;
+    const bool parts = elements[0].part >= 0 && elements[1].part >= 0;
+    if (parts && elements[0].held) continue;
+    const Point edge = elements[0].to - elements[0].from;
+    const double weight = sigma * grid::dot(edge, edge) / 16.0 * (parts ? kBetweenParts : 1.0);
+    const auto place = [&](const Element& e) {
+      return e.part < 0 ? row[std::size_t(e.cell)] : first_part + e.part;
+    };
+    const int a = place(elements[0]), b = place(elements[1]);
+    matrix(a, a) -= weight;
+    matrix(b, b) -= weight;
+    matrix(a, b) += weight;
+    matrix(b, a) += weight;
+  }
+  return matrix;
+}
+
+TEST(ConformingKernels, TheJumpTermSeesPartsAndRegularCells) {
+  Scene scene;
+  const Eigen::MatrixXd without = scene.assembled();
+  scene.level.pressure_jump = 0.4;
+  Eigen::MatrixXd difference = scene.assembled() - without;
+  const Eigen::MatrixXd expected = jump_term(scene, 0.4);
+  difference.bottomRightCorner(expected.rows(), expected.cols()) -= expected;
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT(expected.bottomRows(scene.cells().parts()).cwiseAbs().maxCoeff(), 0.01);
 }
 
 }  // namespace

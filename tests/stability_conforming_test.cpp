@@ -3,6 +3,7 @@
 // matrix, and its order on the roundabout's exact solution.
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -49,7 +50,7 @@ double distance_to_oracle(const scenes::Scene& scene, int n, double kappa) {
 
 TEST(ConformingSolver, AgreesWithTheAssembledMatrix) {
   const double offset = scenes::kStudyOffset;
-  for (const double kappa : {1.0, 10.0}) {
+  for (const double kappa : {1.0, 10.0, 100.0}) {
     EXPECT_LT(distance_to_oracle(scenes::roundabout(90.0, offset), 32, kappa), 1e-6);
     EXPECT_LT(distance_to_oracle(scenes::shift(offset), 64, kappa), 1e-6);
   }
@@ -74,13 +75,29 @@ double roundabout_error(int n, double kappa) {
 }
 
 TEST(ConformingSolver, IsOfSecondOrder) {
-  for (const double kappa : {1.0, 10.0}) {
+  for (const double kappa : {1.0, 10.0, 100.0}) {
     const double e64 = roundabout_error(64, kappa), e128 = roundabout_error(128, kappa),
                  e256 = roundabout_error(256, kappa);
     std::printf("kappa %g: RMS error %.2e %.2e %.2e of the side\n", kappa, e64, e128, e256);
     EXPECT_GT(std::log2(e64 / e128), 1.8);
     EXPECT_GT(std::log2(e128 / e256), 1.8);
   }
+}
+
+TEST(ConformingSolver, ConvergesForEveryKappa) {
+  const double offset = scenes::kStudyOffset, infinite = std::numeric_limits<double>::infinity();
+  for (const scenes::Scene& scene :
+       {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)})
+    for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite}) {
+      multigrid::SolverOptions options;
+      options.curve_method = multigrid::CurveMethod::conforming;
+      options.threads = 1;
+      const multigrid::SolveReport report =
+          multigrid::solve(scenes::problem(scene, 128, kappa), options).report;
+      EXPECT_EQ(report.status, multigrid::Status::converged)
+          << scene.name << " kappa " << kappa << ": " << multigrid::name(report.status);
+      EXPECT_LE(report.levels.back().newton.size(), scene.name == "S1" ? 20u : 12u);
+    }
 }
 
 TEST(ConformingSolver, RefusesSoftCurvesAndExactRows) {

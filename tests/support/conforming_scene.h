@@ -99,7 +99,7 @@ struct Scene {
     return gather(level.f.view());
   }
   Eigen::MatrixXd assembled() {
-    level.conforming->rows.linearise(level.membrane(), 0.0);
+    level.conforming->rows.linearise(level.membrane());
     level.d.clear();
     const Eigen::Index n = gather(level.d.view()).size();
     Eigen::MatrixXd matrix(n, n);

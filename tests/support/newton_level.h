@@ -22,11 +22,16 @@ template <class T>
 class NewtonLevel {
  public:
   /// `jump`: qs of the equations and of the preconditioner; `theta`: clamp of P in the Hessian.
-  NewtonLevel(const multigrid::WarpProblem& problem, double jump, double theta)
-      : hierarchy_(problem.lattice, compressible(problem.material),
-                   grid::cut(problem.curves, problem.lattice, kMostWeight),
-                   {.pressure = problem.material.kappa > 0.0, .jump = jump, .jump_inside = jump},
-                   meter_) {
+  NewtonLevel(const multigrid::WarpProblem& problem, double jump, double theta,
+              multigrid::CurveMethod method = multigrid::CurveMethod::averaged)
+      : hierarchy_(
+            problem.lattice, compressible(problem.material),
+            grid::cut(method == multigrid::CurveMethod::averaged ? problem.curves
+                                                                 : std::vector<grid::CurvePair>{},
+                      problem.lattice, kMostWeight),
+            {.pressure = problem.material.kappa > 0.0, .jump = jump, .jump_inside = jump}, meter_) {
+    if (method == multigrid::CurveMethod::conforming)
+      hierarchy_.conform(problem.curves, problem.lattice, meter_);
     multigrid::SolveReport report;
     multigrid::nested_iteration(hierarchy_,
                                 {.smallest_feature = kSmallestFeature * double(problem.lattice.nx)},

@@ -38,6 +38,19 @@ struct PartVertex {
   T x = T(0), y = T(0);  ///< rest position from the cell's corner 00, in finest cells
 };
 
+/// What lies across a piece of a special cell's side, on the same side of the curves.
+struct PartNeighbour {
+  int part = -1;   ///< of another special cell; −1: a regular cell
+  int vertex = 0;  ///< entry of SpecialCells::vertex at which the piece begins
+  int side = 0;    ///< 0…3: south, east, north, west
+};
+/// A regular cell and a part that is its neighbour.
+struct PartBorder {
+  int column = 0;     ///< of the regular cell
+  int part = 0;       ///< of the special cell
+  int neighbour = 0;  ///< the part's entry of SpecialCells::neighbour
+};
+
 /// A lattice node or crossing node whose place the curve prescribes.
 template <class T>
 struct KnownNode {
@@ -56,9 +69,10 @@ struct SpecialCells {
   std::vector<int> vertex_begin;      ///< parts + 1
   std::vector<PartVertex<T>> vertex;  ///< in the sense 00, 10, 11, 01, which makes areas positive
   std::vector<T> area;                ///< of each part
-  /// Parts of other cells on the same side of the curves, which share a piece of a cell's side:
-  /// those of part p are [neighbour_begin[p], neighbour_begin[p+1]).
-  std::vector<int> neighbour_begin, neighbour;
+  std::vector<int> neighbour_begin;   ///< parts + 1
+  std::vector<PartNeighbour> neighbour;
+  std::vector<int> border_begin;  ///< ny + 1, by the regular cell's row; sorted by column
+  std::vector<PartBorder> border;
   std::vector<int> known_begin;  ///< ny + 2: known lattice nodes of row j, sorted by column
   std::vector<KnownNode<T>> known;
   std::vector<T> crossing_ux, crossing_uy;  ///< displacement of the crossing nodes
@@ -101,9 +115,8 @@ class SpecialRows {
   /// mu; its state is not read.
   SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& membrane);
 
-  /// Sets what depends on the membrane's state, its pressures and their clamp. `jump`: strength of
-  /// the jumps in shares of the smaller Σ |B_i|²/K_ii of the two parts.
-  void linearise(const Membrane<T>& membrane, T jump);
+  /// Sets what depends on the membrane's state, its pressures, their clamp and their jump.
+  void linearise(const Membrane<T>& membrane);
 
   const SpecialCells<T>& cells() const { return *cells_; }
   /// Near nodes of node row j, sorted by column: [near_begin(j), near_begin(j + 1)).
@@ -133,7 +146,7 @@ class SpecialRows {
   void add_stiffness(const Membrane<T>& membrane);
   void linearise_regular(const Membrane<T>& membrane);
   void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
-  void set_jumps(T strength);
+  void set_jumps(const Membrane<T>& membrane);
 
   const SpecialCells<T>* cells_ = nullptr;
   std::vector<int> near_begin_, corner_, loose_begin_, loose_;
