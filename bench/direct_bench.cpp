@@ -1,101 +1,114 @@
 // SPDX-License-Identifier: MIT
-// The same nested Newton iteration with a sparse direct solver (UMFPACK) on the assembled matrix
-// beside drumhead's: same lattice, energy, curve rows, q-jump, start and stopping rule, one thread,
-// in one run. The matrix and its cut cells are the tests' oracle; the time of its assembly, which
-// is not tuned, is listed apart and left out of the ratio.
-//   direct_bench [N…]        lattices, default 100 200 400; 800 needs some 6 GB and minutes
-#include <algorithm>
+// The same nested Newton iteration with sparse direct solvers on the assembled matrix beside
+// drumhead's: same lattice, energy, curve rows, q-jump, start and stopping rule, in one run, as
+// rows of JSON (results.h). The matrix and its cut cells are the tests' oracle; the time of its
+// assembly, which is not tuned, is listed apart and left out of `seconds`.
+//   direct_bench [--threads N] [CELLS…]     default 1 thread, 50 100 150 200 300; even from 64 on
+//                                           (800 takes some GB and minutes)
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
-#include <umfpack.h>
-
+#include "direct_solvers.h"
 #include "nested_newton.h"
+#include "solution_values.h"
 #include "support/scene_problem.h"
+#include "truth.h"
 
 namespace drumhead::bench {
 namespace {
 
-using Eigen::VectorXd;
-
 constexpr int kRepeats = 5;
 
-struct Cost {
-  double peak_bytes = 0.0;
-  int factorisations = 0;
+struct Case {
+  scenes::Scene scene;
+  double kappa;
+  Truth truth;
 };
 
-/// x of matrix · x = right by UMFPACK, with 64-bit indices.
-VectorXd solve_direct(const Eigen::SparseMatrix<double>& matrix, const VectorXd& right,
-                      Cost& cost) {
-  const std::vector<SuiteSparse_long> columns(matrix.outerIndexPtr(),
-                                              matrix.outerIndexPtr() + matrix.cols() + 1);
-  const std::vector<SuiteSparse_long> rows(matrix.innerIndexPtr(),
-                                           matrix.innerIndexPtr() + matrix.nonZeros());
-  const SuiteSparse_long n = matrix.cols();
-  double info[UMFPACK_INFO];
-  void *symbolic = nullptr, *numeric = nullptr;
-  VectorXd x(n);
-  const double* values = matrix.valuePtr();
-  umfpack_dl_symbolic(n, n, columns.data(), rows.data(), values, &symbolic, nullptr, info);
-  const auto status =
-      umfpack_dl_numeric(columns.data(), rows.data(), values, symbolic, &numeric, nullptr, info);
-  cost.peak_bytes =
-      std::max(cost.peak_bytes, info[UMFPACK_PEAK_MEMORY] * info[UMFPACK_SIZE_OF_UNIT]);
-  if (status < 0) {
-    std::fprintf(stderr, "direct_bench: UMFPACK fails with %d\n", int(status));
-    std::exit(1);
-  }
-  umfpack_dl_solve(UMFPACK_A, columns.data(), rows.data(), values, x.data(), right.data(), numeric,
-                   nullptr, info);
-  umfpack_dl_free_symbolic(&symbolic);
-  umfpack_dl_free_numeric(&numeric);
-  ++cost.factorisations;
-  return x;
+double our_seconds(const Case& c, int n, int threads) {
+  const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
+  double least = 1e300;
+  for (int repeat = 0; repeat < kRepeats; ++repeat)
+    least = std::min(least, seconds_of(multigrid::solve(problem, {.threads = threads})));
+  return least;
 }
 
-void run(const scenes::Scene& scene, int n, double kappa) {
-  Cost cost;
-  const NestedNewton direct = nested_newton(scene, n, kappa, [&](const NewtonSystem& system) {
-    return solve_direct(system.linear.matrix, -system.linear.gradient, cost);
-  });
-  const multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
-  multigrid::Solution ours;
-  double seconds = 1e300;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    ours = multigrid::solve(problem, {.threads = 1});
-    seconds = std::min(seconds, ours.report.cut_seconds + ours.report.solve_seconds);
+/// Displacements of all nodes, as shares of the picture.
+void displacements(const NestedNewton& newton, std::vector<double>& u, std::vector<double>& v) {
+  const int n = newton.scene.n;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const int node = newton.scene.node(i, j);
+      u.push_back((newton.state.x[node] - i) / n);
+      v.push_back((newton.state.y[node] - j) / n);
+    }
+}
+
+void run(const Case& c, DirectSolver& solver, int n, int threads, Results& results) {
+  const double ours = our_seconds(c, n, threads);
+  set_blas_threads(threads);
+  const NestedNewton direct =
+      nested_newton(c.scene, n, c.kappa, [&](const NewtonSystem& system) -> Eigen::VectorXd {
+        return solver.solve(system.linear.matrix, -system.linear.gradient);
+      });
+  Json row = joined(keys_of(c.scene, c.kappa),
+                    {{"method", std::string(solver.name()) + ", same lattice"},
+                     {"n", n},
+                     {"threads", threads},
+                     {"unknowns", direct.scene.unknowns()},
+                     {"seconds", direct.solve_seconds},
+                     {"assemble_seconds", direct.assemble_seconds},
+                     {"newton", direct.newton_finest},
+                     {"newton_all", direct.newton},
+                     {"bytes", solver.peak_bytes()},
+                     {"bytes_per_node", solver.peak_bytes() / ((n + 1.0) * (n + 1.0))},
+                     {"our_seconds", ours},
+                     {"ratio", direct.solve_seconds / ours}});
+  if (n <= c.truth.most_cells() && Truth::kFinest % n == 0) {
+    std::vector<double> u, v;
+    displacements(direct, u, v);
+    const Truth::Error error = c.truth.error(n, u, v);
+    row["rms_px"] = error.rms_px;
+    row["max_px"] = error.max_px;
   }
-  const double nodes = double(ours.lattice.nodes());
-  std::printf("| %s kappa %g | %d² | %d | %.2f | %.2f | %.0f | %.0f | %.4f | %.0f | %.0f |\n",
-              scene.name.c_str(), kappa, n, cost.factorisations, direct.solve_seconds,
-              direct.assemble_seconds, cost.peak_bytes / 1e6, cost.peak_bytes / nodes, seconds,
-              double(ours.report.solver_bytes) / nodes, direct.solve_seconds / seconds);
-  std::fflush(stdout);
+  results.row("direct", row);
 }
 
 }  // namespace
 }  // namespace drumhead::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace drumhead;
   std::vector<int> lattices;
-  for (int k = 1; k < argc; ++k) lattices.push_back(std::atoi(argv[k]));
-  if (lattices.empty()) lattices = {100, 200, 400};
-  std::puts(
-      "| scene | lattice | factorisations | direct: analyse, factorise, solve, s | assemble, s | "
-      "peak, MB | B/node | drumhead, s | B/node | direct by drumhead |");
-  std::puts("|---|---|---|---|---|---|---|---|---|---|");
-  const double offset = scenes::kStudyOffset;
-  for (const int n : lattices) {
-    if (n < 32 || n % 2) {
-      std::fprintf(stderr, "direct_bench: lattice %d: must be even and at least 32\n", n);
+  int threads = 1;
+  for (int k = 1; k < argc; ++k) {
+    const bool is_threads = std::string_view(argv[k]) == "--threads" && k + 1 < argc;
+    const int number = std::atoi(argv[is_threads ? ++k : k]);
+    if (is_threads ? number < 1 : number < 32 || (number >= 64 && number % 2)) {
+      std::fprintf(stderr,
+                   "usage: direct_bench [--threads N] [CELLS…]     CELLS even from 64 on\n");
       return 2;
     }
-    bench::run(scenes::sponge(offset), n, 1.0);
-    bench::run(scenes::roundabout(90.0, offset), n, 10.0);
-    bench::run(scenes::shift(offset), n, 10.0);
+    if (is_threads)
+      threads = number;
+    else
+      lattices.push_back(number);
+  }
+  if (lattices.empty()) lattices = {50, 100, 150, 200, 300};
+  const double offset = scenes::kStudyOffset;
+  bench::Results results(argc, argv);
+  for (const auto& [scene, kappa] :
+       {std::pair{scenes::sponge(offset), 1.0}, std::pair{scenes::roundabout(90.0, offset), 10.0},
+        std::pair{scenes::shift(offset), 10.0}}) {
+    const bench::Case c{scene, kappa, bench::Truth(scene, kappa)};
+    for (const int n : lattices)
+      for (const auto& solver : bench::direct_solvers())
+        bench::run(c, *solver, n, threads, results);
   }
   return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "direct_bench: %s\n", error.what());
+  return 1;
 }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "measurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+namespace drumhead::bench {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers that Google Test wrote as text.
+Json property(const Json& value) {
+  if (!value.is_string()) return value;
+  const std::string words = value.get<std::string>();
+  const Json number = Json::parse(words, nullptr, false);
+  return number.is_number() ? number : value;
+}
+
+void read_tests(const Json& document, Measurements& all) {
+  Run run{.program = text(document, "name"), .date = text(document, "timestamp"), .load = kNone};
+  run.command = run.program;
+  bool any = false;
+  for (const Json& suite : document.at("testsuites"))
+    for (const Json& test : suite.at("testsuite")) {
+      if (!test.contains("table")) continue;
+      any = true;
+      Json row{{"table", test.at("table")}};
+      for (const auto& [key, value] : test.items())
+        if (key != "table" && key != "name" && key != "failures") row[key] = property(value);
+      row["case"] = text(test, "name");
+      row["passed"] = !test.contains("failures");
+      all.rows.push_back(std::move(row));
+    }
+  if (any) all.runs.push_back(std::move(run));
+}
+
+void read_results(const Json& document, Measurements& all) {
+  Run run;
+  for (const auto& [key, into] : {std::pair{"program", &run.program},
+                                  {"command", &run.command},
+                                  {"date", &run.date},
+                                  {"commit", &run.commit},
+                                  {"compiler", &run.compiler},
+                                  {"processor", &run.processor}})
+    *into = document.at(key).get<std::string>();
+  run.processors = document.at("processors").get<int>();
+  run.load = value(document, "load");
+  for (const Json& row : document.at("rows")) {
+    if (!row.is_object() || !row.at("table").is_string())
+      throw std::runtime_error("a row without a table");
+    all.rows.push_back(row);
+  }
+  all.runs.push_back(std::move(run));
+}
+
+/// Programs of rivals have tables of their own; the rivals' rows stand in the common ones, too.
+void add_rivals(Measurements& all) {
+  Rows shared;
+  for (const Json& row : all.rows) {
+    const std::string table = text(row, "table");
+    if (is_ours(row) || (table != "direct" && table != "mesh" && table != "amg")) continue;
+    Json copy = row;
+    if (!copy.contains("threads")) copy["threads"] = 1;
+    copy["table"] = "table1";
+    if (text(row, "scene") == "S1" && value(row, "kappa") == 1.0) shared.push_back(copy);
+    copy["table"] = "work_precision";
+    if (row.contains("rms_px") && copy["threads"] == 1) shared.push_back(copy);
+  }
+  std::ranges::move(shared, std::back_inserter(all.rows));
+}
+
+}  // namespace
+
+Rows Measurements::table(const std::string& name) const {
+  return where(rows, [&](const Json& row) { return text(row, "table") == name; });
+}
+
+Measurements read_measurements(const std::vector<std::string>& files) {
+  Measurements all;
+  for (const std::string& file : files) {
+    std::ifstream stream(file);
+    if (!stream) throw std::runtime_error(file + ": cannot be read");
+    try {
+      const Json document = Json::parse(stream);
+      if (document.contains("testsuites"))
+        read_tests(document, all);
+      else
+        read_results(document, all);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(file + ": " + error.what());
+    }
+  }
+  add_rivals(all);
+  return all;
+}
+
+std::string text(const Json& row, const char* key) {
+  const auto found = row.find(key);
+  return found == row.end() || !found->is_string() ? std::string() : found->get<std::string>();
+}
+
+double value(const Json& row, const char* key) {
+  const auto found = row.find(key);
+  if (found == row.end()) return kNone;
+  if (found->is_string() && *found == "inf") return std::numeric_limits<double>::infinity();
+  return found->is_number() ? found->get<double>() : kNone;
+}
+
+Rows where(const Rows& rows, const std::function<bool(const Json&)>& holds) {
+  Rows some;
+  std::ranges::copy_if(rows, std::back_inserter(some), holds);
+  return some;
+}
+
+bool is_ours(const Json& row) { return text(row, "method").starts_with("drumhead"); }
+
+std::vector<std::string> distinct(const Rows& rows,
+                                  const std::function<std::string(const Json&)>& of) {
+  std::vector<std::string> names;
+  for (const Json& row : rows)
+    if (std::string name = of(row); std::ranges::find(names, name) == names.end())
+      names.push_back(std::move(name));
+  return names;
+}
+
+}  // namespace drumhead::bench

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the benchmarks left (results.h), read back: rows of all files together, and by whom, where
+// and when they were measured. Google Test's JSON is read, too: each test is a row of the table
+// that its property "table" names, with its other properties as values, "case" and "passed".
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "results.h"
+
+namespace drumhead::bench {
+
+/// A run of a program; `load` was the machine's before it, NaN where not known.
+struct Run {
+  std::string program, command, date, commit, compiler, processor;
+  int processors = 0;
+  double load = 0.0;
+};
+
+using Rows = std::vector<Json>;
+
+struct Measurements {
+  std::vector<Run> runs;
+  Rows rows;
+
+  Rows table(const std::string& name) const;
+};
+
+/// Reads all files. Throws std::runtime_error that names the file and what is wrong in it.
+Measurements read_measurements(const std::vector<std::string>& files);
+
+/// A row's text, "" if there is none.
+std::string text(const Json& row, const char* key);
+/// A row's number, "inf" understood; NaN if there is none.
+double value(const Json& row, const char* key);
+/// Rows of which `true` holds.
+Rows where(const Rows& rows, const std::function<bool(const Json&)>& holds);
+/// Whether the row's method is drumhead's own.
+bool is_ours(const Json& row);
+
+/// Lines of a text that name each different value once, in the order met.
+std::vector<std::string> distinct(const Rows& rows, const std::function<std::string(const Json&)>&);
+
+}  // namespace drumhead::bench

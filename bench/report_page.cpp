@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "report_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+
+#include "report_losses.h"
+#include "report_page_template.h"
+#include "report_plots.h"
+#include "report_summary.h"
+#include "report_tables.h"
+
+namespace drumhead::bench {
+namespace {
+
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+    std::uint32_t group = 0;
+    for (std::size_t b = 0; b < 3; ++b)
+      group = group << 8 | (b < count ? std::uint8_t(bytes[k + b]) : 0u);
+    for (std::size_t d = 0; d < 4; ++d)
+      text += d <= count ? kDigits[group >> (18 - 6 * d) & 63] : '=';
+  }
+  return text;
+}
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read");
+  return bytes;
+}
+
+/// Pictures side by side by what stands before the first "-" of their names: face-before,
+/// face-after.
+std::string gallery(const std::string& folder) {
+  std::map<std::string, std::vector<std::filesystem::path>> scenes;
+  if (!folder.empty())
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".png") {
+        const std::string stem = entry.path().stem().string();
+        scenes[stem.substr(0, stem.find('-'))].push_back(entry.path());
+      }
+  std::string html;
+  for (auto& [scene, files] : scenes) {
+    const auto place = [](const std::filesystem::path& file) {
+      const std::string stem = file.stem().string();
+      const std::string_view kind = std::string_view(stem).substr(stem.find('-') + 1);
+      return std::pair(kind == "before" ? 0 : kind == "after" ? 1 : 2, stem);
+    };
+    std::ranges::sort(files, {}, place);
+    html += "<h3>" + escaped(scene) + "</h3>\n<div class=\"pictures\">";
+    for (const auto& file : files) {
+      const std::string stem = file.stem().string();
+      std::string kind = stem.find('-') == std::string::npos ? "" : stem.substr(stem.find('-') + 1);
+      std::ranges::replace(kind, '-', ' ');
+      html += "<figure><img loading=\"lazy\" alt=\"" + escaped(scene + ", " + kind) +
+              "\" src=\"data:image/png;base64," + base64(contents(file)) + "\"><figcaption>" +
+              escaped(kind) + "</figcaption></figure>\n";
+    }
+    html += "</div>\n";
+  }
+  return html;
+}
+
+std::string commands(const std::string& programs) {
+  return "<p class=\"faint\">Measured by <code>" + escaped(programs) + "</code>.</p>\n";
+}
+
+std::string html_with_title(const Sheet& sheet) {
+  const std::string note =
+      (sheet.note.empty() ? "" : "<p>" + escaped(sheet.note) + "</p>\n") + commands(sheet.command);
+  if (sheet.cells.empty())
+    return "<h3>" + escaped(sheet.title) + "</h3>\n<p class=\"missing\">Not measured yet.</p>\n" +
+           commands(sheet.command);
+  if (sheet.detail)
+    return "<details><summary>" + escaped(sheet.title) + " (" + std::to_string(sheet.cells.size()) +
+           " rows)</summary>\n" + note + html_of(sheet) + "</details>\n";
+  return "<h3>" + escaped(sheet.title) + "</h3>\n" + note + html_of(sheet);
+}
+
+/// The plots of a section side by side.
+std::string figures(const std::vector<ReportPlot>& all, const std::string& section) {
+  std::string html;
+  for (const ReportPlot& plot : all)
+    if (plot.section == section)
+      html += "<figure id=\"plot_" + escaped(plot.id) + "\">" + svg_of(plot.plot) + "<figcaption>" +
+              escaped(plot.caption) + "</figcaption></figure>\n";
+  return html.empty() ? html : "<div class=\"plots\">" + html + "</div>\n";
+}
+
+std::string list_of(const std::vector<std::string>& sentences) {
+  std::string html = "<ul>";
+  for (const std::string& words : sentences) html += "<li>" + escaped(words) + "</li>\n";
+  return html + "</ul>\n";
+}
+
+std::string lost(const Measurements& measured) {
+  // Long lists are folded, so that the short ones are read.
+  constexpr std::size_t kShown = 12;
+  std::string html;
+  for (const Losses& entry : losses(measured)) {
+    html += "<h3>" + escaped(entry.where) + "</h3>\n";
+    if (entry.words.empty()) {
+      html += "<p>Nowhere in what was measured.</p>\n";
+    } else if (entry.words.size() <= kShown) {
+      html += list_of(entry.words);
+    } else {
+      html += "<details><summary>" + std::to_string(entry.words.size()) + " places</summary>\n" +
+              list_of(entry.words) + "</details>\n";
+    }
+  }
+  return html;
+}
+
+std::string runs(const Measurements& measured) {
+  std::string html =
+      "<div class=\"wide\"><table id=\"runs\"><thead><tr><th>command</th><th>date</th>"
+      "<th>commit</th><th>compiler</th><th>processor</th><th class=\"number\">processors</th>"
+      "<th class=\"number\">load before</th></tr></thead>\n<tbody>";
+  for (const Run& run : measured.runs) {
+    html += "<tr>";
+    for (const std::string& cell : {run.command, run.date, run.commit, run.compiler, run.processor})
+      html += "<td>" + escaped(cell) + "</td>";
+    html += "<td class=\"number\">" + (run.processors > 0 ? std::to_string(run.processors) : "–") +
+            "</td><td class=\"number\">" + figure(run.load) + "</td></tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+/// The template with each {{key}} replaced.
+std::string filled(std::string page, const std::map<std::string, std::string>& parts) {
+  std::string html;
+  for (std::size_t at = 0;;) {
+    const std::size_t open = page.find("{{", at), close = page.find("}}", open);
+    if (open == std::string::npos || close == std::string::npos) return html + page.substr(at);
+    html += page.substr(at, open - at) + parts.at(page.substr(open + 2, close - open - 2));
+    at = close + 2;
+  }
+}
+
+}  // namespace
+
+std::string page_of(const Measurements& measured, const std::string& pictures) {
+  const std::vector<ReportPlot> drawn = plots(measured);
+  std::map<std::string, std::string> parts{{"plot_style", plot_style()},
+                                           {"summary", list_of(summary(measured))},
+                                           {"machine", escaped(machine(measured))},
+                                           {"losses", lost(measured)},
+                                           {"runs", runs(measured)},
+                                           {"gallery", gallery(pictures)}};
+  for (const char* section : {"table1", "precision", "scaling", "warps"})
+    parts[std::string("plots_") + section] = figures(drawn, section);
+  std::string others;
+  const std::string placed = " table1 table1_memory precision tolerances rates warps stability ";
+  for (const Sheet& sheet : sheets(measured)) {
+    if (placed.find(" " + sheet.id + " ") == std::string::npos)
+      others += html_with_title(sheet);
+    else
+      parts["sheet_" + sheet.id] = html_with_title(sheet);
+  }
+  parts["other_sheets"] = others;
+  return filled(kReportPageTemplate, parts);
+}
+
+}  // namespace drumhead::bench

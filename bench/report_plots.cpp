@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "report_plots.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report_tables.h"
+
+namespace drumhead::bench {
+namespace {
+
+using Line = PlotSeries::Line;
+using Name = std::function<std::string(const Json&)>;
+using Number = std::function<double(const Json&)>;
+
+// A peer has the same look in every plot.
+struct Peer {
+  const char* part;  // of the name
+  int look;
+};
+constexpr Peer kPeers[] = {
+    {"paper", 6},        {"triangle mesh", 4}, {"conforming", 0}, {"minres-multigrid", 2},
+    {"minres", 3},       {"coloured", 7},      {"kaczmarz", 6},   {"averaged", 1},
+    {"gcr", 1},          {"MUMPS", 2},         {"UMFPACK", 3},    {"CHOLMOD", 3},
+    {"PARDISO", 7},      {"AMG", 5},           {"hypre", 5},      {"thin-plate", 4},
+    {"moving least", 5}, {"Shepard", 7}};
+
+int look_of(const std::string& name) {
+  for (const Peer& peer : kPeers)
+    if (name.find(peer.part) != std::string::npos) return peer.look;
+  return 6;
+}
+
+Number number_of(const char* key, double scale = 1.0) {
+  return [=](const Json& row) { return scale * value(row, key); };
+}
+
+/// Rows as lines: one for each name, its points from left to right.
+std::vector<PlotSeries> lines_of(const Rows& rows, const Name& name, const Number& x,
+                                 const Number& y, const Name& label = {}) {
+  std::vector<PlotSeries> all;
+  for (const std::string& line : distinct(rows, name)) {
+    PlotSeries series{line, look_of(line), Line::solid, {}};
+    for (const Json& row : rows)
+      if (name(row) == line && std::isfinite(x(row)) && std::isfinite(y(row)))
+        series.points.push_back({x(row), y(row), label ? label(row) : ""});
+    if (!series.points.empty()) all.push_back(std::move(series));
+  }
+  return all;
+}
+
+bool solved(const Json& row) {
+  const std::string status = text(row, "status");
+  return status.empty() || status == "converged";
+}
+
+std::string thread_name(const Json& row) {
+  return text(row, "method") + ", " + figure(value(row, "threads"));
+}
+
+/// Solves on more than one thread are dashed.
+void dash_threads(std::vector<PlotSeries>& lines) {
+  for (PlotSeries& line : lines)
+    if (!line.name.ends_with(", 1")) line.line = Line::dashed;
+}
+
+void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
+  const Rows rows = where(measured.table("table1"), solved);
+  ReportPlot time{"speed",
+                  "table1",
+                  "Behind each name the number of threads. The paper's curves are from its own "
+                  "machine (six cores, 2014).",
+                  {.title = "Whole solve of the sponge",
+                   .x_name = "cells across the picture",
+                   .y_name = "seconds",
+                   .series = lines_of(rows, thread_name, number_of("n"), number_of("seconds"))},
+                  true};
+  dash_threads(time.plot.series);
+  all.push_back(std::move(time));
+
+  ReportPlot bytes{"memory",
+                   "scaling",
+                   "The solver's peak by the nodes (of a mesh: vertices, of the paper: its mesh's "
+                   "and its lattice's) that it solves for.",
+                   {.title = "Memory per node, the sponge",
+                    .x_name = "cells across the picture",
+                    .y_name = "bytes per node"}};
+  const auto one = [](const Json& row) { return value(row, "threads") == 1; };
+  bytes.plot.series =
+      lines_of(where(rows, one), Name([](const Json& r) { return text(r, "method"); }),
+               number_of("n"), number_of("bytes_per_node"));
+  all.push_back(std::move(bytes));
+
+  const auto gain = [&](const Json& row) {
+    for (const Json& alone : rows)
+      if (value(alone, "threads") == 1 && text(alone, "method") == text(row, "method") &&
+          value(alone, "n") == value(row, "n"))
+        return value(alone, "seconds") / value(row, "seconds");
+    return std::nan("");
+  };
+  const auto several = [](const Json& row) { return value(row, "threads") > 1; };
+  all.push_back({"threads",
+                 "scaling",
+                 "Seconds on one thread by seconds on that many.",
+                 {.title = "Gain of threads, the sponge",
+                  .x_name = "cells across the picture",
+                  .y_name = "times faster than one thread",
+                  .log_y = false,
+                  .series = lines_of(where(rows, several), thread_name, number_of("n"), gain)}});
+}
+
+void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
+  const Rows every = where(measured.table("work_precision"), solved);
+  const struct {
+    const char *scene, *words;
+  } scenes[] = {{"S2", "roundabout 90°, kappa/mu 10"},
+                {"S4", "disc moved, kappa/mu 10"},
+                {"S1", "sponge, kappa/mu 1"}};
+  const struct {
+    const char *id, *key, *words;
+  } errors[] = {{"precision", "rms_px", "RMS error"},
+                {"precision_max", "max_px", "largest error"},
+                {"precision_gap", "gap_rms_px", "curve gap, RMS"}};
+  for (const auto& scene : scenes)
+    for (const auto& error : errors) {
+      const Rows rows = where(
+          every, [&](const Json& row) { return text(row, "scene").starts_with(scene.scene); });
+      const std::string id = std::string(error.id) + "_" + scene.scene;
+      ReportPlot plot{
+          id,
+          "precision",
+          "Beside the marks: cells across the picture.",
+          {.title = std::string(error.words) + " against time: " + scene.words,
+           .x_name = "seconds, one thread",
+           .y_name = std::string(error.words) + ", px of 1000",
+           .series = lines_of(
+               rows, [](const Json& row) { return text(row, "method"); }, number_of("seconds"),
+               number_of(error.key), [](const Json& row) { return figure(value(row, "n")); })},
+          id == "precision_S2"};
+      // Only drumhead's recommended ways carry their lattices: the others' are the same.
+      for (PlotSeries& line : plot.plot.series)
+        if (std::ranges::count(line.name, ',') > 1 || !line.name.starts_with("drumhead"))
+          for (PlotPoint& point : line.points) point.label.clear();
+      all.push_back(std::move(plot));
+    }
+  all.push_back({"tolerances",
+                 "precision",
+                 "Tolerances from 10 to 0.001 px: beyond its own error a lattice gains nothing by "
+                 "being solved better.",
+                 {.title = "RMS error against time over tolerances: roundabout, 400²",
+                  .x_name = "seconds, one thread",
+                  .y_name = "RMS error, px of 1000",
+                  .series = lines_of(
+                      where(measured.table("tolerances"), solved),
+                      [](const Json& row) { return text(row, "method"); }, number_of("seconds"),
+                      number_of("rms_px"),
+                      [](const Json& row) { return figure(value(row, "tolerance_px")); })}});
+}
+
+bool hard(const Json& row) { return !row.contains("weight") || std::isinf(value(row, "weight")); }
+
+void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
+  const Rows every =
+      where(measured.table("rates"), [](const Json& row) { return row.value("converged", true); });
+  const Rows gcr = where(every, [](const Json& row) { return text(row, "solver") == "gcr"; });
+  const Number rate = number_of("work_units_per_digit");
+  const auto scene_and_kappa = [](const Json& row) {
+    return text(row, "scene") + ", kappa " + figure(value(row, "kappa"));
+  };
+  ReportPlot sizes{"rates_n",
+                   "scaling",
+                   "One Newton system, hard curves.",
+                   {.title = "Work for a factor of ten over lattices, gcr",
+                    .x_name = "cells across the picture",
+                    .y_name = "work units per digit"}};
+  sizes.plot.series = lines_of(where(gcr, hard), scene_and_kappa, number_of("n"), rate);
+  std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 3; });
+  for (std::size_t k = 0; k < sizes.plot.series.size(); ++k) sizes.plot.series[k].look = int(k) % 8;
+  all.push_back(std::move(sizes));
+
+  const Rows roundabout = where(every, [](const Json& row) {
+    return hard(row) && text(row, "scene") == "S2" && value(row, "n") == 128;
+  });
+  ReportPlot kappas{"scaling",
+                    "scaling",
+                    "One Newton system of the roundabout at 128². Where a line ends, the method "
+                    "does not converge.",
+                    {.title = "Work for a factor of ten over kappa/mu",
+                     .x_name = "kappa/mu",
+                     .y_name = "work units per digit"},
+                    true};
+  kappas.plot.x_words =
+      distinct(roundabout, [](const Json& row) { return figure(value(row, "kappa")); });
+  const auto place = [words = kappas.plot.x_words](const Json& row) {
+    return double(std::ranges::find(words, figure(value(row, "kappa"))) - words.begin());
+  };
+  kappas.plot.series = lines_of(
+      roundabout, [](const Json& row) { return text(row, "solver"); }, place, rate);
+  all.push_back(std::move(kappas));
+
+  const Rows soft = where(gcr, [](const Json& row) { return row.contains("weight"); });
+  ReportPlot weights{"rates_d",
+                     "scaling",
+                     "One Newton system, gcr.",
+                     {.title = "Work for a factor of ten over the curves' stiffness d",
+                      .x_name = "d, stiffness per length, in mu per picture side",
+                      .y_name = "work units per digit"}};
+  weights.plot.x_words =
+      distinct(soft, [](const Json& row) { return figure(value(row, "weight")); });
+  const auto stiffness = [words = weights.plot.x_words](const Json& row) {
+    return double(std::ranges::find(words, figure(value(row, "weight"))) - words.begin());
+  };
+  weights.plot.series = lines_of(
+      soft,
+      [&](const Json& row) { return scene_and_kappa(row) + ", " + figure(value(row, "n")) + "²"; },
+      stiffness, rate);
+  for (std::size_t k = 0; k < weights.plot.series.size(); ++k)
+    weights.plot.series[k].look = int(k) % 8;
+  all.push_back(std::move(weights));
+}
+
+void add_warps(const Measurements& measured, std::vector<ReportPlot>& all) {
+  for (const std::string& scene :
+       distinct(measured.table("warps"), [](const Json& row) { return text(row, "scene"); })) {
+    const Rows rows = where(measured.table("warps"),
+                            [&](const Json& row) { return text(row, "scene") == scene; });
+    all.push_back({"warps_" + scene,
+                   "warps",
+                   "",
+                   {.title = "How far curves are missed, against time: " + scene,
+                    .x_name = "seconds, one thread",
+                    .y_name = "curve gap, RMS, px of 1000",
+                    .series = lines_of(
+                        rows, [](const Json& row) { return text(row, "method"); },
+                        number_of("seconds"), number_of("gap_rms_px"))}});
+  }
+}
+
+}  // namespace
+
+std::vector<ReportPlot> plots(const Measurements& measured) {
+  std::vector<ReportPlot> all;
+  add_table1(measured, all);
+  add_precision(measured, all);
+  add_rates(measured, all);
+  add_warps(measured, all);
+  std::erase_if(all, [](const ReportPlot& plot) { return plot.plot.series.empty(); });
+  return all;
+}
+
+}  // namespace drumhead::bench

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The measurements in a few sentences, each only where its rows are there.
+#include <string>
+#include <vector>
+
+#include "measurements.h"
+
+namespace drumhead::bench {
+
+std::vector<std::string> summary(const Measurements& measured);
+
+/// Processor, commit and dates of the runs, for the head of the page and of bench/README.md.
+std::string machine(const Measurements& measured);
+
+/// The README's table: sizes across, drumhead and its rivals down. Markdown.
+std::string key_table(const Measurements& measured);
+
+}  // namespace drumhead::bench

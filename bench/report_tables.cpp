@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "report_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "svg_plot.h"
+
+namespace drumhead::bench {
+namespace {
+
+struct Column {
+  std::string head;
+  std::function<std::string(const Json&)> cell;
+  bool numeric = true;
+};
+
+/// A table with a row of its own for each row measured.
+struct List {
+  std::string id, title, command, note, table;
+  std::vector<Column> columns;
+  bool detail = true;
+};
+
+/// A table across: a row for each name that `row` gives, a column for each that `column` gives.
+struct Across {
+  std::string id, title, command, note, table, corner;
+  std::function<std::string(const Json&)> row, column, cell;
+  bool detail = false;
+};
+
+Column number(std::string head, const char* key, double scale = 1.0) {
+  return {std::move(head), [=](const Json& row) { return figure(scale * value(row, key)); }};
+}
+Column word(std::string head, const char* key) {
+  return {std::move(head), [=](const Json& row) { return text(row, key); }, false};
+}
+std::string lattice_of(const Json& row) { return figure(value(row, "n")) + "²"; }
+const Column kLattice{"lattice", lattice_of};
+const Column kScene{
+    "scene",
+    [](const Json& row) {
+      const std::string scene = text(row, "scene");
+      return row.contains("kappa") ? scene + ", kappa " + figure(value(row, "kappa")) : scene;
+    },
+    false};
+const Column kSteps{"Newton steps (cycles)", [](const Json& row) {
+                      return figure(value(row, "newton")) + " (" + figure(value(row, "cycles")) +
+                             ")";
+                    }};
+const Column kStatus = word("status", "status");
+
+std::string with_threads(const Json& row) {
+  const int threads = int(value(row, "threads"));
+  return text(row, "method") + ", " + std::to_string(threads) +
+         (threads == 1 ? " thread" : " threads");
+}
+/// Seconds, marked where they are not those of a solution.
+std::string seconds_of(const Json& row) {
+  const std::string status = text(row, "status");
+  return figure(value(row, "seconds")) + (status.empty() || status == "converged" ? "" : "*");
+}
+
+std::vector<Across> tables_across() {
+  return {
+      {"table1", "Table 1 again: the whole nonlinear solve of the stretchy sponge, seconds",
+       "speed_bench table1, direct_bench, mesh_bench",
+       "kappa/mu 1. Energy, curves, start and stopping rule (a tenth of the discretisation error "
+       "in px) are the same in all runs of this machine, and cutting or meshing counts. The "
+       "paper's figures are from its six-core processor of 2014, without a stated tolerance; its "
+       "rival ran on a triangle mesh along the curves with about as many unknowns, as our "
+       "triangle mesh does, the direct solvers named “same lattice” on drumhead's own equations. "
+       "*: did not converge.",
+       "table1", "seconds", with_threads, lattice_of, seconds_of},
+      {"table1_memory", "Table 1 again: memory of the solver, MB",
+       "speed_bench table1, direct_bench, mesh_bench",
+       "1 MB is 10⁶ bytes. Of direct solvers their own count of the factorisation's peak; the "
+       "matrix that is handed to them comes on top.",
+       "table1", "MB", with_threads, lattice_of,
+       [](const Json& row) { return figure(1e-6 * value(row, "bytes")); }},
+      {"rates", "Work units for a factor of ten, one Newton system", "rates_bench",
+       "Processor time in Hessian–vector products that each linear solver takes to reduce the "
+       "residual by ten, over a reduction by 1000; in brackets cycles or iterations. *: given up "
+       "before; –: less than an eighth gained.",
+       "rates", "scene",
+       [](const Json& row) {
+         std::string name = lattice_of(row) + " " + kScene.cell(row);
+         if (row.contains("weight")) name += ", d " + figure(value(row, "weight"));
+         return name;
+       },
+       [](const Json& row) { return text(row, "solver"); },
+       [](const Json& row) {
+         return figure(value(row, "work_units_per_digit")) +
+                (row.value("converged", true) ? "" : "*") + " (" + figure(value(row, "cycles")) +
+                ")";
+       },
+       true},
+  };
+}
+
+std::vector<Column> precision_columns() {
+  return {kScene,
+          word("method", "method"),
+          kLattice,
+          number("unknowns", "unknowns"),
+          number("seconds", "seconds"),
+          number("RMS error, px", "rms_px"),
+          number("largest error, px", "max_px"),
+          number("curve gap, RMS, px", "gap_rms_px"),
+          number("largest gap, px", "gap_max_px"),
+          number("folded cells", "folded"),
+          kSteps,
+          number("work units", "work_units"),
+          kStatus};
+}
+
+std::vector<Column> solve_columns() {
+  return {kScene,
+          kLattice,
+          kStatus,
+          number("work units", "work_units"),
+          number("seconds", "seconds"),
+          number("of them cutting", "cut_seconds"),
+          kSteps,
+          number("B/node", "bytes_per_node"),
+          number("curve gap, px", "gap_rms_px"),
+          number("discretisation error, px", "discretisation_px"),
+          number("algebraic error, estimated share of it", "algebraic_share"),
+          number("true share", "true_share")};
+}
+
+std::vector<List> lists() {
+  return {
+      {"precision", "Error against time, one thread", "speed_bench precision, speed_bench solvers",
+       "Error at the lattice's nodes, in px of a picture of 1000 px: S2 against its exact radial "
+       "solution, S1 and S4 against a conforming solution on 1600².",
+       "work_precision", precision_columns()},
+      {"tolerances",
+       "Error against time over tolerances, roundabout at 400², kappa/mu 10",
+       "speed_bench tolerances",
+       "The tolerance bounds the algebraic error alone; what remains is the lattice's own.",
+       "tolerances",
+       {word("method", "method"), number("tolerance, px", "tolerance_px"),
+        number("seconds", "seconds"), number("RMS error, px", "rms_px"),
+        number("largest error, px", "max_px"), kSteps, kStatus}},
+      {"solve", "Whole solves by drumhead's default way", "solve_bench",
+       "To a tenth of the estimated discretisation error. The true share compares with a solve to "
+       "a thousandth of the tolerance.",
+       "solve", solve_columns()},
+      {"direct",
+       "The same Newton's method with sparse direct solvers, same lattice and equations",
+       "direct_bench",
+       "The ratio is the direct solver's analysis, factorisation and solution by drumhead's whole "
+       "solve; the assembly, which is not tuned, is left out of it.",
+       "direct",
+       {kScene, word("method", "method"), kLattice, number("threads", "threads"),
+        number("factorisations", "newton_all"),
+        number("analyse, factorise, solve, s", "linear_seconds"),
+        number("assemble, s", "assemble_seconds"), number("peak, MB", "bytes", 1e-6),
+        number("B/node", "bytes_per_node"), number("drumhead, s", "our_seconds"),
+        number("direct by drumhead", "ratio")}},
+      {"curves",
+       "Two ways to meet curves, roundabout against its exact solution",
+       "curves_bench",
+       "Default tolerance, one thread. The first lattice has no estimate of its error.",
+       "curves",
+       {kScene, word("curves", "curves"), kLattice, number("RMS error, px", "rms_px"),
+        number("largest, px", "max_px"), number("reported RMS, px", "discretisation_px"),
+        number("folded cells", "folded"), kSteps, number("work units", "work_units"),
+        number("ms", "seconds", 1e3), number("of them cutting", "cut_seconds", 1e3), kStatus}},
+      {"warps",
+       "What people use instead, on the same scenes",
+       "warps_bench",
+       "The gap is measured along the curves; folded: share of the picture whose area is turned "
+       "over; RMS(J−1): how far areas are from being kept.",
+       "warps",
+       {kScene, word("method", "method"), number("points", "points"), number("cells", "n"),
+        number("seconds", "seconds"), number("curve gap, RMS, px", "gap_rms_px"),
+        number("largest gap, px", "gap_max_px"), number("folded, %", "folded_share", 100.0),
+        number("RMS(J−1)", "rms_J")},
+       false},
+      {"stability",
+       "Hard cases",
+       "stability tests",
+       "Each with the status that is expected and the bound on its Newton steps.",
+       "stability",
+       {word("group", "group"),
+        word("case", "case"),
+        word("expected", "expected"),
+        word("ended", "ended"),
+        number("Newton steps", "newton"),
+        number("bound", "bound"),
+        {"as expected", [](const Json& row) { return words(row.value("passed", Json())); }, false}},
+       false},
+      {"membranes",
+       "Every membrane, 128², kappa 1",
+       "membranes_bench",
+       "",
+       "membranes",
+       {word("model", "model"), word("scene", "scene"), kStatus,
+        number("Newton steps, all levels", "newton_all"), kSteps,
+        number("work units", "work_units"), number("seconds", "seconds"),
+        number("product, ns per node", "product_ns"), number("B/node", "bytes_per_node"),
+        number("inverted cells", "inverted"), number("folded cells", "folded")}},
+      {"eq8",
+       "Eq. 8 as an inequality: scenes of many discs, eps .2",
+       "membranes_bench",
+       "",
+       "eq8",
+       {word("scene", "scene"), number("kappa", "kappa"), kLattice, kStatus,
+        number("Newton steps, all levels", "newton_all"), kSteps,
+        number("work units", "work_units"), number("seconds", "seconds"),
+        number("B/node", "bytes_per_node"), number("most inverted on the way", "most_inverted"),
+        number("folded at the end", "folded"), number("least corner J", "least_corner_J")}},
+      {"kernels",
+       "Kernels beside streaming loops",
+       "kernels_bench",
+       "Of streaming: the time of a loop that moves the same bytes by the kernel's time, in turns "
+       "with it, median of pairs; 1 is the speed of memory.",
+       "kernels",
+       {word("kernel", "kernel"), kLattice, word("memory", "memory"), word("instructions", "isa"),
+        number("threads", "threads"), number("ns/node", "ns"), number("B/node", "bytes_per_node"),
+        number("of streaming", "ratio"), number("products", "work_units"),
+        number("gain of threads", "gain"), number("streaming's gain", "stream_gain"),
+        number("by our product", "against")}},
+      {"resample",
+       "Resampler beside other samplers, one thread",
+       "resample_bench",
+       "PSNR against 16 × 16 samples a pixel.",
+       "resample",
+       {word("warp", "warp"), word("sampler", "sampler"), word("filter", "filter"),
+        number("PSNR, dB", "psnr_db"), number("Mpixel/s", "megapixels_per_second"),
+        number("time by ours", "by_ours")}},
+  };
+}
+
+Sheet filled(const List& list, const Rows& rows) {
+  Sheet sheet{list.id, list.title, list.note, list.command, {}, {}, {}, list.detail};
+  for (const Column& column : list.columns) {
+    // A column that no row fills is not shown.
+    const auto empty = [&](const Json& row) {
+      const std::string cell = column.cell(row);
+      return cell.empty() || cell == "–" || cell == "– (–)" || cell == "–²";
+    };
+    if (std::ranges::all_of(rows, empty)) continue;
+    sheet.head.push_back(column.head);
+    sheet.numeric.push_back(column.numeric);
+    sheet.cells.resize(rows.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) sheet.cells[k].push_back(column.cell(rows[k]));
+  }
+  return sheet;
+}
+
+Sheet filled(const Across& across, const Rows& rows) {
+  Sheet sheet{across.id,       across.title, across.note, across.command,
+              {across.corner}, {false},      {},          across.detail};
+  std::vector<std::string> columns = distinct(rows, across.column);
+  if (across.column(Json{{"n", 50}}) == "50²")
+    std::ranges::stable_sort(columns, {}, [](const std::string& name) { return std::stod(name); });
+  for (const std::string& name : columns) {
+    sheet.head.push_back(name);
+    sheet.numeric.push_back(true);
+  }
+  for (const std::string& name : distinct(rows, across.row)) {
+    std::vector<std::string> cells{name};
+    for (const std::string& column : columns) {
+      const auto found = std::ranges::find_if(rows, [&](const Json& row) {
+        return across.row(row) == name && across.column(row) == column;
+      });
+      cells.push_back(found == rows.end() ? "" : across.cell(*found));
+    }
+    sheet.cells.push_back(std::move(cells));
+  }
+  return sheet;
+}
+
+}  // namespace
+
+std::vector<Sheet> sheets(const Measurements& measured) {
+  std::vector<Sheet> all;
+  for (const Across& across : tables_across())
+    all.push_back(filled(across, measured.table(across.table)));
+  for (const List& list : lists()) all.push_back(filled(list, measured.table(list.table)));
+  return all;
+}
+
+std::string html_of(const Sheet& sheet) {
+  std::string html = "<div class=\"wide\"><table id=\"" + sheet.id + "\"><thead><tr>";
+  const auto set = [&](std::size_t k) { return sheet.numeric[k] ? " class=\"number\">" : ">"; };
+  for (std::size_t k = 0; k < sheet.head.size(); ++k)
+    html += std::string("<th") + set(k) + escaped(sheet.head[k]) + "</th>";
+  html += "</tr></thead>\n<tbody>";
+  for (const auto& row : sheet.cells) {
+    html += "<tr>";
+    for (std::size_t k = 0; k < row.size(); ++k)
+      html += std::string("<td") + set(k) + escaped(row[k]) + "</td>";
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string markdown_of(const Sheet& sheet) {
+  std::string lines = "|", rule = "|";
+  for (std::size_t k = 0; k < sheet.head.size(); ++k) {
+    lines += " " + sheet.head[k] + " |";
+    rule += sheet.numeric[k] ? "---:|" : "---|";
+  }
+  lines += "\n" + rule + "\n";
+  for (const auto& row : sheet.cells) {
+    lines += "|";
+    for (const std::string& cell : row) lines += " " + cell + " |";
+    lines += "\n";
+  }
+  return lines;
+}
+
+std::string figure(double value) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+  const double size = std::abs(value);
+  char buffer[40];
+  if (size >= 1e6 || (size > 0.0 && size < 1e-3))
+    std::snprintf(buffer, sizeof buffer, "%.1e", value);
+  else
+    std::snprintf(buffer, sizeof buffer, size >= 100.0 ? "%.0f" : "%.3g", value);
+  return buffer;
+}
+
+}  // namespace drumhead::bench
