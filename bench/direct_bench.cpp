@@ -3,8 +3,9 @@
 // drumhead's: same lattice, energy, curve rows, q-jump, start and stopping rule, in one run, as
 // rows of JSON (results.h). The matrix and its cut cells are the tests' oracle; the time of its
 // assembly, which is not tuned, is listed apart and left out of `seconds`.
-//   direct_bench [--threads N] [CELLS…]     default 1 thread, 50 100 150 200 300; even from 64 on
-//                                           (800 takes some GB and minutes)
+//   direct_bench [--sponge] [--threads N] [CELLS…]
+// --sponge: that scene alone. CELLS: lattices, 50 100 200 if not given, even from 64 on; 800 takes
+// some GB and minutes.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -83,12 +84,18 @@ int main(int argc, char** argv) try {
   using namespace drumhead;
   std::vector<int> lattices;
   int threads = 1;
+  bool all = true;
   for (int k = 1; k < argc; ++k) {
-    const bool is_threads = std::string_view(argv[k]) == "--threads" && k + 1 < argc;
+    const std::string_view word = argv[k];
+    if (word == "--sponge") {
+      all = false;
+      continue;
+    }
+    const bool is_threads = word == "--threads" && k + 1 < argc;
     const int number = std::atoi(argv[is_threads ? ++k : k]);
     if (is_threads ? number < 1 : number < 32 || (number >= 64 && number % 2)) {
-      std::fprintf(stderr,
-                   "usage: direct_bench [--threads N] [CELLS…]     CELLS even from 64 on\n");
+      std::fputs("usage: direct_bench [--sponge] [--threads N] [CELLS…]    CELLS even from 64 on\n",
+                 stderr);
       return 2;
     }
     if (is_threads)
@@ -96,12 +103,15 @@ int main(int argc, char** argv) try {
     else
       lattices.push_back(number);
   }
-  if (lattices.empty()) lattices = {50, 100, 150, 200, 300};
+  if (lattices.empty()) lattices = {50, 100, 200};
   const double offset = scenes::kStudyOffset;
+  std::vector<std::pair<scenes::Scene, double>> cases{{scenes::sponge(offset), 1.0}};
+  if (all) {
+    cases.push_back({scenes::roundabout(90.0, offset), 10.0});
+    cases.push_back({scenes::shift(offset), 10.0});
+  }
   bench::Results results(argc, argv);
-  for (const auto& [scene, kappa] :
-       {std::pair{scenes::sponge(offset), 1.0}, std::pair{scenes::roundabout(90.0, offset), 10.0},
-        std::pair{scenes::shift(offset), 10.0}}) {
+  for (const auto& [scene, kappa] : cases) {
     const bench::Case c{scene, kappa, bench::Truth(scene, kappa)};
     for (const int n : lattices)
       for (const auto& solver : bench::direct_solvers())

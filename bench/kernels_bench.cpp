@@ -15,7 +15,7 @@
 
 #include "bench_level.h"
 #include "competitors.h"
-#include "report.h"
+#include "kernel_rows.h"
 #include "roofline.h"
 
 namespace drumhead::bench {
@@ -183,10 +183,15 @@ std::vector<std::uint64_t> result(const Kernel<T>& kernel, BenchLevel<T>& level,
   return all;
 }
 
+/// The row's keys, which the reporter reads back.
 std::string label(const std::string& kernel, const Size& size, const std::string& isa,
                   int threads) {
-  return kernel + " | " + std::to_string(size.n) + "² " + size.memory + " | " + isa + " | " +
-         std::to_string(threads);
+  return Json{{"kernel", kernel},
+              {"n", size.n},
+              {"memory", size.memory},
+              {"isa", isa},
+              {"threads", threads}}
+      .dump();
 }
 
 void count(benchmark::State& state, double seconds, std::size_t nodes) {
@@ -206,7 +211,7 @@ void run_kernel(benchmark::State& state, const Kernel<T>& kernel, Size size, Isa
     const auto stream = [&] { streams.run(threads); };
     const Paired pair(threads, run, stream);
     count(state, pair.first(), level.nodes());
-    state.counters["bytes"] = kernel.mix.traffic() * sizeof(T);
+    state.counters["bytes_per_node"] = kernel.mix.traffic() * sizeof(T);
     state.counters["ratio"] = pair.ratio();
     if (work_units) {
       const Kernel<T> unit = product<T>();
@@ -321,7 +326,8 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   drumhead::bench::register_all();
-  drumhead::bench::MarkdownReporter reporter;
+  drumhead::bench::Results results(argc, argv);
+  drumhead::bench::RowReporter reporter(results);
   benchmark::RunSpecifiedBenchmarks(&reporter);
   return reporter.failures() == 0 ? 0 : 1;
 }

@@ -12,33 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Numbers that Google Test wrote as text.
-Json property(const Json& value) {
-  if (!value.is_string()) return value;
-  const std::string words = value.get<std::string>();
-  const Json number = Json::parse(words, nullptr, false);
-  return number.is_number() ? number : value;
-}
-
-void read_tests(const Json& document, Measurements& all) {
-  Run run{.program = text(document, "name"), .date = text(document, "timestamp"), .load = kNone};
-  run.command = run.program;
-  bool any = false;
-  for (const Json& suite : document.at("testsuites"))
-    for (const Json& test : suite.at("testsuite")) {
-      if (!test.contains("table")) continue;
-      any = true;
-      Json row{{"table", test.at("table")}};
-      for (const auto& [key, value] : test.items())
-        if (key != "table" && key != "name" && key != "failures") row[key] = property(value);
-      row["case"] = text(test, "name");
-      row["passed"] = !test.contains("failures");
-      all.rows.push_back(std::move(row));
-    }
-  if (any) all.runs.push_back(std::move(run));
-}
-
-void read_results(const Json& document, Measurements& all) {
+void add_document(const Json& document, Measurements& all) {
   Run run;
   for (const auto& [key, into] : {std::pair{"program", &run.program},
                                   {"command", &run.command},
@@ -85,11 +59,7 @@ Measurements read_measurements(const std::vector<std::string>& files) {
     std::ifstream stream(file);
     if (!stream) throw std::runtime_error(file + ": cannot be read");
     try {
-      const Json document = Json::parse(stream);
-      if (document.contains("testsuites"))
-        read_tests(document, all);
-      else
-        read_results(document, all);
+      add_document(Json::parse(stream), all);
     } catch (const std::exception& error) {
       throw std::runtime_error(file + ": " + error.what());
     }

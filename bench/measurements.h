@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What the benchmarks left (results.h), read back: rows of all files together, and by whom, where
-// and when they were measured. Google Test's JSON is read, too: each test is a row of the table
-// that its property "table" names, with its other properties as values, "case" and "passed".
+// and when they were measured.
 #include <functional>
 #include <string>
 #include <vector>

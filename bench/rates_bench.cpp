@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What each linear solver takes to reduce the residual of a Newton system by ten, in work units
-// (one Hessian–vector product timed in the same run), as a Markdown table: all solvers, scenes and
-// kappa.
+// (one Hessian–vector product timed in the same run), as rows of JSON (results.h): all solvers,
+// scenes and kappa.
 //   rates_bench [N]      cells a side, 128 if not given
 #include <algorithm>
 #include <chrono>
@@ -14,6 +14,7 @@
 
 #include <drumhead/kernels/threads.h>
 
+#include "solution_values.h"
 #include "support/newton_level.h"
 #include "support/scene_problem.h"
 
@@ -56,25 +57,22 @@ Entry measure(scenes::NewtonLevel<float>& level, Solver solver) {
   return entry;
 }
 
-void run(const scenes::Scene& scene, double kappa, int n) {
+void run(const scenes::Scene& scene, double kappa, int n, Results& results) {
   scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), kJump, kTheta);
   const double unit = level.product_seconds<Clock>();
-  if (scene.kappa_mask)
-    std::printf("| %s mask ", scene.name.c_str());
-  else
-    std::printf("| %s kappa %g ", scene.name.c_str(), kappa);
   for (const Solver solver : kSolvers) {
     const Entry entry = measure(level, solver);
     const double digits = -std::log10(entry.report.residual);
-    const bool converged = entry.report.residual <= kReduction;
-    if (digits > 0.05)
-      std::printf("| %.0f%s (%d) ", entry.seconds / unit / digits, converged ? "" : "*",
-                  entry.report.cycles);
-    else
-      std::printf("| – (%d) ", entry.report.cycles);
+    // What gains less than an eighth has no rate.
+    const double rate =
+        digits > 0.05 ? entry.seconds / unit / digits : std::numeric_limits<double>::quiet_NaN();
+    results.row("rates", joined(keys_of(scene, kappa),
+                                {{"n", n},
+                                 {"solver", multigrid::name(solver)},
+                                 {"work_units_per_digit", rate},
+                                 {"cycles", entry.report.cycles},
+                                 {"converged", entry.report.residual <= kReduction}}));
   }
-  std::puts("|");
-  std::fflush(stdout);
 }
 
 }  // namespace
@@ -88,14 +86,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   const kernels::ThreadLimit one(1);
-  std::printf("| %d² ", n);
-  for (const multigrid::Solver solver : bench::kSolvers)
-    std::printf("| %s ", multigrid::name(solver));
-  std::puts("|\n|---|---|---|---|---|---|");
+  bench::Results results(argc, argv);
   const double offset = scenes::kStudyOffset, infinite = std::numeric_limits<double>::infinity();
   for (const scenes::Scene& scene :
        {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)})
-    for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite}) bench::run(scene, kappa, n);
-  bench::run(scenes::pinch(offset), 1.0, n);
+    for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite})
+      bench::run(scene, kappa, n, results);
+  bench::run(scenes::pinch(offset), 1.0, n, results);
   return 0;
 }

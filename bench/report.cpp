@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Makes one page, or Markdown tables, of what the benchmarks left as JSON (results.h):
 //   report -o PAGE.html [--pictures FOLDER] [--plots FOLDER] FILE.json…
-//   report --markdown FILE.json…
+//   report --markdown FILE.json…          every table
+//   report --key-table FILE.json…         the README's
 // --pictures: PNG files that the page shall show. --plots: where the README's plots go, as SVG.
 // Exit code 2: an argument, or a file that is not as it should be (named); nothing is written.
 #include <cstdio>
@@ -19,7 +20,7 @@ namespace drumhead::bench {
 namespace {
 
 struct Arguments {
-  bool markdown = false;
+  bool markdown = false, key_table = false;
   std::string page, pictures, plots;
   std::vector<std::string> files;
 };
@@ -36,13 +37,16 @@ Arguments parsed(int argc, char** argv) {
       *into = argv[++k];
     else if (word == "--markdown")
       arguments.markdown = true;
+    else if (word == "--key-table")
+      arguments.key_table = true;
     else if (!into && !word.starts_with("-"))
       arguments.files.emplace_back(word);
     else
       throw std::runtime_error(std::string(word) + ": not understood, or without its value");
   }
-  if (arguments.files.empty() || arguments.markdown == !arguments.page.empty())
-    throw std::runtime_error("wanted: FILE.json… and either -o PAGE.html or --markdown");
+  if (arguments.files.empty() ||
+      arguments.markdown + arguments.key_table + !arguments.page.empty() != 1)
+    throw std::runtime_error("wanted: FILE.json… and one of -o PAGE.html, --markdown, --key-table");
   return arguments;
 }
 
@@ -57,7 +61,7 @@ void write(const std::string& file, const std::string& text) {
 }
 
 void print_markdown(const Measurements& measured) {
-  std::printf("%s\n\n%s\n", machine(measured).c_str(), key_table(measured).c_str());
+  std::printf("%s\n\n", machine(measured).c_str());
   for (const Sheet& sheet : sheets(measured))
     if (!sheet.cells.empty())
       std::printf("### %s\n\n%s%s%s\n", sheet.title.c_str(), sheet.note.c_str(),
@@ -68,6 +72,10 @@ void run(const Arguments& arguments) {
   const Measurements measured = read_measurements(arguments.files);
   if (arguments.markdown) {
     print_markdown(measured);
+    return;
+  }
+  if (arguments.key_table) {
+    std::printf("%s\n%s\n", key_table(measured).c_str(), machine(measured).c_str());
     return;
   }
   const std::string page = page_of(measured, arguments.pictures);

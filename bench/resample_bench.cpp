@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Our resampler beside other libraries' samplers, all by the same backward map: signal to noise
-// against a brute force picture of 16 × 16 samples a pixel, and output pixels per second. Prints a
-// Markdown table.
+// against a brute force picture of 16 × 16 samples a pixel, and output pixels per second, as rows
+// of JSON (results.h).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
 
+#include "results.h"
 #include "samplers.h"
 #include "support/scene_problem.h"
 #include "support/warped_lattice.h"
@@ -128,7 +129,8 @@ double seconds_of(const Run& run) {
   return worked() - start;
 }
 
-void run(const Case& c, const Pixels& picture, const std::vector<Sampler>& others) {
+void run(const Case& c, const Pixels& picture, const std::vector<Sampler>& others,
+         Results& results) {
   const Pixels truth = oracle(c);
   Pixels out{c.width, c.width, kChannels, {}};
   out.data.resize(std::size_t(c.width * c.width * kChannels));
@@ -147,13 +149,11 @@ void run(const Case& c, const Pixels& picture, const std::vector<Sampler>& other
                          const std::vector<double>& seconds, const std::vector<double>& our) {
     std::vector<double> ratios;
     for (std::size_t k = 0; k < seconds.size(); ++k) ratios.push_back(seconds[k] / our[k]);
-    std::printf("| %s | %s | %s | ", c.name, who.c_str(), filter.c_str());
-    if (decibels > 0.0)
-      std::printf("%.1f", decibels);
-    else
-      std::printf("–");
-    std::printf(" | %.3g | %.2f |\n", megapixels / median(seconds), median(ratios));
-    std::fflush(stdout);
+    Json row{{"warp", c.name}, {"sampler", who}, {"filter", filter}};
+    if (decibels > 0.0) row["psnr_db"] = decibels;
+    row["megapixels_per_second"] = megapixels / median(seconds);
+    row["by_ours"] = median(ratios);
+    results.row("resample", row);
   };
 
   ours();
@@ -180,7 +180,7 @@ void run(const Case& c, const Pixels& picture, const std::vector<Sampler>& other
 }  // namespace
 }  // namespace drumhead::bench
 
-int main() try {
+int main(int argc, char** argv) try {
   using namespace drumhead::bench;
   Pixels picture{kSize, kSize, kChannels, {}};
   for (int b = 0; b < kSize; ++b) {
@@ -191,13 +191,12 @@ int main() try {
     }
   }
   const auto others = samplers(picture);
-  std::puts("| warp | sampler | filter | PSNR, dB | Mpixel/s | time by ours |");
-  std::puts("|---|---|---|---|---|---|");
+  Results results(argc, argv);
   const Case cases[] = {{"turned by 30°", affine(30, 1), 704, 640},
                         {"roundabout 90°, solved", roundabout(), 832, 640},
                         {"compressed 4 times", affine(10, 0.25), 176, 160},
                         {"compressed 8 times", affine(10, 0.125), 88, 80}};
-  for (const Case& c : cases) run(c, picture, others);
+  for (const Case& c : cases) run(c, picture, others, results);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "resample_bench: %s\n", error.what());

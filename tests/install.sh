@@ -2,6 +2,7 @@
 # Installs the Debian 12 packages that are missing, as root or with sudo:
 #   sh tests/install.sh         what the release preset builds with, which is all that driver/demo.sh needs
 #   sh tests/install.sh tests   also the programs that the tests hand our files to (tests/run.sh)
+#   sh tests/install.sh bench   what bench/report.sh compares with, beside what it builds with
 #   sh tests/install.sh all     also the presets clang and tsan, and tests/tidy.sh
 # Where nothing is missing, it uses no network and no privileges.
 set -eu
@@ -16,6 +17,10 @@ packages="
   libgtest-dev
   libbenchmark-dev"
 case ${1:-} in
+  bench)
+    packages="$packages libsuitesparse-dev libmumps-seq-dev libmumps-headers-dev libopenblas-pthread-dev
+      libpetsc-real-dev libcgal-dev libopencv-shape-dev libopencv-imgproc-dev libvips-dev"
+    ;;
   tests | all)
     packages="$packages chromium-headless-shell imagemagick libvips-tools libopencv-imgproc-dev"
     ;;

@@ -1,0 +1,139 @@
+#!/bin/sh
+# Measures drumhead and its rivals and makes one page of it, from a clean clone of a Debian 12, as root
+# or with sudo: installs what is missing, builds, runs the programs of bench/ one after another, writes
+#     build/report/index.html     the page: plots, tables, pictures, in one file
+#     bench/tables.md             all tables
+#     bench/pictures/*.svg        the README's plots; its table is put into README.md itself
+#   sh bench/report.sh              some 20 minutes on two quiet cores
+#   sh bench/report.sh --large      also solves at 1600² and 3200²
+#   sh bench/report.sh --direct N   also direct solvers on the sponge at 400² (N 400) or up to 800² (N 800;
+#                                   some GB and half an hour)
+#   sh bench/report.sh --page       measures nothing: the page of what was measured before
+# What was measured since a program was last built is kept: run again, it goes on where it stopped.
+# Leave the machine alone meanwhile; the page says how loaded it was.
+set -eu
+cd "$(dirname "$0")/.."
+
+large=
+direct=
+measure=yes
+while [ $# -gt 0 ]; do
+  case $1,${2:-} in
+    --large,*) large=--large ;;
+    --direct,400)
+      direct="400"
+      shift
+      ;;
+    --direct,800)
+      direct="400 800"
+      shift
+      ;;
+    --page,*) measure= ;;
+    *)
+      echo "usage: bench/report.sh [--large] [--direct 400|800] [--page]" >&2
+      exit 2
+      ;;
+  esac
+  shift
+done
+
+programs="speed_bench direct_bench mesh_bench amg_bench warps_bench solve_bench curves_bench rates_bench
+  membranes_bench stability_bench resample_bench kernels_bench report"
+folder=build/bench
+results=build/report/results
+mkdir -p $results bench/pictures
+
+sh tests/install.sh bench
+cmake --preset release -B $folder -DDRUMHEAD_BUILD_BENCH=ON -DDRUMHEAD_BUILD_TESTS=OFF \
+  -DDRUMHEAD_BUILD_DRIVER=OFF >build/report/configure.log
+# A rival whose package is not there has no program.
+cmake --build $folder --target help >build/report/targets.log
+targets=
+for program in $programs; do
+  ! grep -q "^$program:" build/report/targets.log || targets="$targets $program"
+done
+cmake --build $folder --target $targets
+
+# libgomp's threads otherwise spin between loops, on whatever else the machine does; direct solvers say
+# themselves how many threads their BLAS gets.
+export OMP_WAIT_POLICY=passive OPENBLAS_NUM_THREADS=1
+failed=
+# stage NAME PROGRAM ARGUMENT…: leaves its rows in NAME.json.
+stage() {
+  file=$results/$1.json
+  program=$folder/bench/$2
+  [ -x "$program" ] || return 0
+  if [ "$file" -nt "$program" ]; then
+    echo "$(date +%T) $1: measured before"
+    return 0
+  fi
+  shift 2
+  echo "$(date +%T) ${program##*/} $*"
+  if "$program" "$@" >"$file.part" 2>"$file.log"; then
+    mv "$file.part" "$file"
+  else
+    failed="$failed $file.log"
+    echo "failed: $(tail -n 1 "$file.log")"
+    # Rows until then count, if the program could end its document, and are measured again next time.
+    if [ "$(tail -n 1 "$file.part")" = "]}" ]; then
+      mv "$file.part" "$file"
+      touch -d 1970-01-02 "$file"
+    else
+      rm -f "$file" "$file.part"
+    fi
+  fi
+}
+if [ "$measure" ]; then
+  cores=$(nproc)
+  stage table1 speed_bench table1 $large
+  stage precision speed_bench precision $large
+  stage tolerances speed_bench tolerances
+  stage solvers speed_bench solvers
+  stage curves curves_bench
+  stage solve solve_bench $large
+  stage mesh mesh_bench
+  stage amg amg_bench
+  stage warps warps_bench
+  stage stability stability_bench
+  stage membranes membranes_bench
+  stage rates rates_bench 128
+  stage rates_64 rates_bench 64
+  stage rates_256 rates_bench 256
+  stage direct direct_bench
+  stage direct_sponge direct_bench --sponge 150 300
+  stage direct_threads direct_bench --sponge --threads "$cores" 50 100 150 200 300
+  if [ "$direct" ]; then
+    stage "direct_${direct##* }" direct_bench --sponge $direct
+    stage "direct_${direct##* }_threads" direct_bench --sponge --threads "$cores" $direct
+  fi
+  stage resample resample_bench
+  stage kernels kernels_bench
+fi
+
+report=$folder/bench/report
+# Without measurements there is the paper's table alone.
+set -- $(ls $results/*.json 2>/dev/null) bench/paper.json
+$report -o build/report/index.html --plots bench/pictures --pictures driver/examples/pictures "$@"
+{
+  echo '# Everything that was measured'
+  echo
+  echo 'Made by `sh bench/report.sh`; what it means stands in [README.md](README.md).'
+  echo
+  $report --markdown "$@"
+} >bench/tables.md
+# The README's table lies between two marks.
+$report --key-table "$@" >build/report/key-table.md
+awk '/^<!-- end of the table -->/ { inside = 0 }
+     !inside
+     /^<!-- made by bench\/report.sh -->/ {
+       inside = 1
+       while ((getline line < "build/report/key-table.md") > 0) print line
+     }' README.md >build/report/README.md
+cat build/report/README.md >README.md
+echo
+echo "$PWD/build/report/index.html"
+echo "bench/tables.md bench/pictures README.md"
+[ -z "$failed" ] || {
+  echo "failed:$failed" >&2
+  exit 1
+}
