@@ -15,7 +15,7 @@ drumhead=build/release/driver/drumhead
 examples=driver/examples
 results=build/demo
 mkdir -p "$results"
-[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
+[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//' | sort)
 
 for scene in "$@"; do
   drawing=$examples/$(sed -n 's/^picture = "\(.*\)\.svg".*/\1/p' "$examples/$scene.toml")

@@ -168,6 +168,13 @@ const std::array kKeys = {
         .help = "of the linear systems; all but gcr are there for comparison, and slower",
         .fallback = "gcr",
         .set = set_solver},
+    Key{.name = "start",
+        .value = "EXR",
+        .bound = "the path of an .exr file",
+        .help = "the file that --lattice wrote in an earlier run on the same lattice, to go on "
+                "from where a curve was dragged a little or let go; averaged curves only",
+        .set = [](const Value& v, Options& o) { return set_path(v, ".exr", o.start); },
+        .path = true},
     Key{.name = "threads",
         .value = "N",
         .bound = "a whole number from 1 to 4096",

@@ -96,15 +96,16 @@ void write_cells(const Solution& s, std::ostream& stream) {
 
 void write_lattice(const Solution& s, const std::filesystem::path& file) {
   const int columns = s.lattice.nx + 1;
-  write_float_exr(lattice_exr(s, columns, s.lattice.ny + 1, {"u", "v"}), file,
-                  [&](int first, int rows, float* pixels) {
-                    std::size_t k = std::size_t(first) * std::size_t(columns);
-                    const std::size_t end = k + std::size_t(rows) * std::size_t(columns);
-                    for (; k < end; ++k) {
-                      *pixels++ = float(s.u_px[k]);
-                      *pixels++ = float(s.v_px[k]);
-                    }
-                  });
+  FloatExr exr = lattice_exr(s, columns, s.lattice.ny + 1, {"u", "v"});
+  exr.header.emplace_back(kLatticeError, std::to_string(s.report.discretisation_rms_px));
+  write_float_exr(exr, file, [&](int first, int rows, float* pixels) {
+    std::size_t k = std::size_t(first) * std::size_t(columns);
+    const std::size_t end = k + std::size_t(rows) * std::size_t(columns);
+    for (; k < end; ++k) {
+      *pixels++ = float(s.u_px[k]);
+      *pixels++ = float(s.v_px[k]);
+    }
+  });
 }
 
 void write_lattice_cells(const Solution& s, const std::filesystem::path& file) {

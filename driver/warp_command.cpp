@@ -4,6 +4,7 @@
 #include <drumhead/multigrid/warp.h>
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "atomic_file.h"
@@ -17,6 +18,7 @@
 #include "progress.h"
 #include "render.h"
 #include "report.h"
+#include "start_lattice.h"
 #include "stopwatch.h"
 #include "svg_curves.h"
 #include "svg_picture.h"
@@ -55,7 +57,7 @@ void check_files(Options& options) {
   }
   for (auto file = outputs.begin(); file != outputs.end(); ++file) {
     for (const fs::path& input : {options.picture, options.curves, options.scene,
-                                  options.mu_mask.file, options.kappa_mask.file}) {
+                                  options.mu_mask.file, options.kappa_mask.file, options.start}) {
       if (!input.empty() && same_file(*file, input)) {
         throw std::invalid_argument(file->string() + ": an output must not replace an input");
       }
@@ -83,6 +85,19 @@ multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
   check_inside(problem.lattice, curves);
   problem.curves = apply_settings(options, curves);
   return problem;
+}
+
+/// The solution to go on from, if one was named.
+std::optional<multigrid::Solution> start_of(const Options& options, const grid::Lattice& lattice) {
+  if (options.start.empty()) return {};
+  if (options.exact) throw std::invalid_argument("start: not with exact curves");
+  if (options.curve_method == multigrid::CurveMethod::conforming)
+    throw std::invalid_argument("start: not with conforming curves, give curve_method averaged");
+  multigrid::Solution start = read_start(options.start, lattice);
+  if (!(start.report.discretisation_rms_px > 0.0) && options.tolerance_px == 0.0)
+    throw std::invalid_argument(options.start.string() +
+                                ": its error is not known, so a tolerance must be given");
+  return start;
 }
 
 /// The outputs that were asked for, as empty temporary files until `commit`.
@@ -142,6 +157,24 @@ Image read_picture(const Options& options, Progress& progress) {
                                                 : read_image(options.picture, read);
 }
 
+multigrid::Solution solve(const Options& options, const multigrid::WarpProblem& problem,
+                          const std::optional<multigrid::Solution>& start, Progress& progress) {
+  multigrid::SolverOptions solver{.solver = options.solver,
+                                  .curve_method = options.curve_method,
+                                  .exact = options.exact,
+                                  .tolerance_px = options.tolerance_px,
+                                  .start = start ? &*start : nullptr,
+                                  .threads = options.threads,
+                                  .progress = {}};
+  solver.progress = [&](const multigrid::Progress& at) { progress.show(at); };
+  progress.show("cutting " + std::to_string(problem.curves.size()) + " curves");
+  multigrid::Solution solution = multigrid::solve(problem, solver);
+  if (start && solution.report.levels.size() > 1)
+    progress.warn(options.start.string() +
+                  ": too far away; the scene was solved from the beginning");
+  return solution;
+}
+
 }  // namespace
 
 int run_warp(Options options) {
@@ -157,18 +190,11 @@ int run_warp(Options options) {
       read_curves(SvgDocument(options.curves), picture.width(), picture.height());
   for (const std::string& warning : drawing.warnings) progress.warn(warning);
   const multigrid::WarpProblem problem = problem_of(options, picture, drawing.curves);
+  const std::optional<multigrid::Solution> start = start_of(options, problem.lattice);
   const Frame frame = frame_of(picture, problem.lattice, options.expand);
   seconds.read = watch.lap();
 
-  multigrid::SolverOptions solver{.solver = options.solver,
-                                  .curve_method = options.curve_method,
-                                  .exact = options.exact,
-                                  .tolerance_px = options.tolerance_px,
-                                  .threads = options.threads,
-                                  .progress = {}};
-  solver.progress = [&](const multigrid::Progress& at) { progress.show(at); };
-  progress.show("cutting " + std::to_string(problem.curves.size()) + " curves");
-  const multigrid::Solution solution = multigrid::solve(problem, solver);
+  const multigrid::Solution solution = solve(options, problem, start, progress);
   seconds.cut = solution.report.cut_seconds;
   seconds.solve = solution.report.solve_seconds;
   watch.lap();

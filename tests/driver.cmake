@@ -10,6 +10,10 @@ drumhead_test(NAME driver_warp_test
   SOURCES driver_scratch.cpp driver_warp_test.cpp
   LINK drumhead_driver
   LABEL numeric)
+drumhead_test(NAME driver_start_test
+  SOURCES driver_scratch.cpp driver_start_test.cpp
+  LINK drumhead_driver
+  LABEL numeric)
 drumhead_test(NAME driver_page_test
   SOURCES driver_scratch.cpp driver_page_test.cpp
   LINK drumhead_driver
@@ -31,7 +35,7 @@ if(OPENCV_INCLUDE_DIR AND OPENCV_IMGPROC AND OPENCV_CORE)
   target_link_libraries(driver_consumers_test PRIVATE ${OPENCV_IMGPROC} ${OPENCV_CORE})
   target_compile_definitions(driver_consumers_test PRIVATE DRUMHEAD_TEST_OPENCV=1)
 endif()
-foreach(test driver_test driver_warp_test driver_page_test driver_large_test
+foreach(test driver_test driver_warp_test driver_start_test driver_page_test driver_large_test
     driver_consumers_test)
   target_compile_definitions(${test} PRIVATE
     DRUMHEAD_EXECUTABLE="$<TARGET_FILE:drumhead>"

@@ -13,7 +13,7 @@ sh driver/demo.sh "$@"
 
 examples=driver/examples
 mkdir -p "$examples/pictures"
-[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//')
+[ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//' | sort)
 # small FROM TO
 small() {
   oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 640x0 -d uint8 -o "build/demo/small.png"
@@ -22,7 +22,7 @@ small() {
 }
 for scene in "$@"; do
   # A scene that has no drawing of its own shares the picture before with the one whose it is.
-  [ ! -e "$examples/$scene.svg" ] ||
+  ! grep -q "^picture = \"$scene.svg\"" "$examples/$scene.toml" ||
     small "build/demo/$scene-before.png" "$examples/pictures/$scene-before.png"
   small "build/demo/$scene.png" "$examples/pictures/$scene-after.png"
   for more in checkerboard jacobian; do
