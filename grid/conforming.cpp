@@ -22,11 +22,9 @@ constexpr double kLeastConflict = 1e-6;  // cells
 
 class Conformer {
  public:
-  Conformer(const std::vector<CurvePair>& curves, const Lattice& lattice,
-            const ConformOptions& options)
-      : curves_(curves), lattice_(lattice), options_(options) {
-    for (const CurvePair& curve : curves) walks_.push_back(walk(curve, lattice));
-  }
+  Conformer(const std::vector<CurvePair>& curves, const std::vector<CurveWalk>& walks,
+            const Lattice& lattice, const ConformOptions& options)
+      : curves_(curves), lattice_(lattice), options_(options), walks_(walks) {}
 
   ConformingCells run() {
     while (!assemble()) {
@@ -54,7 +52,7 @@ class Conformer {
   const std::vector<CurvePair>& curves_;
   const Lattice& lattice_;
   const ConformOptions& options_;
-  std::vector<CurveWalk> walks_;
+  const std::vector<CurveWalk>& walks_;
   SimplifiedCells simplified_;
   CurveNodes nodes_;
   std::size_t edge_nodes_ = 0;  // curve nodes on edges; the ones in cells follow
@@ -272,8 +270,9 @@ void Conformer::hold_nodes() {
 
 }  // namespace
 
-ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
-                        const ConformOptions& options) {
+std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves,
+                                            const Lattice& lattice, int levels,
+                                            const ConformOptions& options) {
   if (!(options.snap > 0.0 && options.snap <= 0.25))
     throw std::invalid_argument("snap = " + std::to_string(options.snap) +
                                 ": must be above 0 and at most 0.25");
@@ -282,7 +281,20 @@ ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lat
       throw std::invalid_argument("curve '" + curve.name +
                                   "': weight = " + std::to_string(curve.weight) +
                                   ": must be positive (infinity allowed)");
-  return Conformer(curves, lattice, options).run();
+  std::vector<CurveWalk> walks;
+  for (const CurvePair& curve : curves) walks.push_back(walk(curve, lattice));
+  std::vector<ConformingCells> cells;
+  for (Lattice on_level = lattice; int(cells.size()) < levels;) {
+    cells.push_back(Conformer(curves, walks, on_level, options).run());
+    for (CurveWalk& walk : walks) walk = coarsened(walk, on_level);
+    on_level = coarsened(on_level);
+  }
+  return cells;
+}
+
+ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
+                        const ConformOptions& options) {
+  return std::move(conform_levels(curves, lattice, 1, options).front());
 }
 
 Lattice coarsened(const Lattice& fine) {

@@ -50,6 +50,12 @@ std::vector<Piece> open_pieces(const ConformingCells& cells) {
 
 void share_pressures(ConformingCells& cells, double least_area) {
   const std::size_t parts = std::size_t(cells.parts());
+  if (least_area == 0.0) {
+    cells.part_pressure.resize(parts);
+    std::iota(cells.part_pressure.begin(), cells.part_pressure.end(), 0);
+    cells.pressures = cells.parts();
+    return;
+  }
   // Neighbours on the same side: parts of two cells with a common piece.
   std::vector<std::array<int, 2>> neighbours;
   const std::vector<Piece> pieces = open_pieces(cells);

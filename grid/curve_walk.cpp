@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <drumhead/grid/conforming.h>
+
 #include "crossings.h"
 #include "quadrature.h"
 
@@ -36,6 +38,59 @@ double arc_between(const CubicBezier& curve, double t0, double t1) {
   return sum;
 }
 
+/// A tip near the outer boundary ends on it.
+void end_on_boundary(CurveEvent& event, const Lattice& lattice) {
+  const CellIndex cell = event.after;
+  const double x = event.source.x - cell.i, y = event.source.y - cell.j;
+  auto node = [&](int i, int j) { return EdgeIndex(j) * (lattice.nx + 1) + i; };
+  auto end_on = [&](EdgeIndex edge, double along, Point at) {
+    event.edge = edge;
+    event.along = std::clamp(along, 0.0, 1.0);
+    event.source = at;
+  };
+  if (cell.i == 0 && x < kBoundaryTip)
+    end_on(2 * node(0, cell.j) + 1, y, {0.0, event.source.y});
+  else if (cell.i == lattice.nx - 1 && x > 1.0 - kBoundaryTip)
+    end_on(2 * node(lattice.nx, cell.j) + 1, y, {double(lattice.nx), event.source.y});
+  else if (cell.j == 0 && y < kBoundaryTip)
+    end_on(2 * node(cell.i, 0), x, {event.source.x, 0.0});
+  else if (cell.j == lattice.ny - 1 && y > 1.0 - kBoundaryTip)
+    end_on(2 * node(cell.i, lattice.ny), x, {event.source.x, double(lattice.ny)});
+}
+
+/// Two crossings of one edge with nothing between them: the curve only peeps into the next cell.
+void cancel(std::vector<CurveEvent>& events, bool closed) {
+  auto same = [](const CurveEvent& a, const CurveEvent& b) {
+    return a.edge != kNoEdge && a.edge == b.edge;
+  };
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < events.size(); ++n) {
+    if (kept > 0 && same(events[kept - 1], events[n]))
+      --kept;
+    else
+      events[kept++] = events[n];
+  }
+  events.resize(kept);
+  if (!closed) return;
+  std::size_t first = 0;
+  while (events.size() - first > 1 && same(events[first], events.back())) {
+    ++first;
+    events.pop_back();
+  }
+  events.erase(events.begin(), events.begin() + std::ptrdiff_t(first));
+}
+
+/// The events from all that was met.
+void set_events(CurveWalk& walk, const Lattice& lattice) {
+  walk.events = walk.all;
+  if (!walk.closed) {
+    end_on_boundary(walk.events.front(), lattice);
+    end_on_boundary(walk.events.back(), lattice);
+  }
+  cancel(walk.events, walk.closed);
+  if (walk.events.empty()) walk.events.push_back(walk.middle);
+}
+
 class Walker {
  public:
   Walker(const CurvePair& curve, const Lattice& lattice) : curve_(curve), lattice_(lattice) {
@@ -62,8 +117,8 @@ class Walker {
       tip(last.source.at(1.0), last.target.at(1.0));
     }
     walk_.length = arc_;
-    cancel();
-    if (walk_.events.empty()) middle();
+    walk_.middle = middle();
+    set_events(walk_, lattice_);
     return std::move(walk_);
   }
 
@@ -101,75 +156,35 @@ class Walker {
       const int step = next.i > cell_.i ? 1 : -1, line = std::max(cell_.i, cell_.i + step);
       cell_.i += step;
       const double along = std::clamp(source.y - cell_.j, 0.0, 1.0);
-      walk_.events.push_back({2 * node(line, cell_.j) + 1,
-                              along,
-                              cell_,
-                              {double(line), cell_.j + along},
-                              target,
-                              arc_});
+      walk_.all.push_back({2 * node(line, cell_.j) + 1,
+                           along,
+                           cell_,
+                           {double(line), cell_.j + along},
+                           target,
+                           arc_});
     }
     while (cell_.j != next.j) {
       const int step = next.j > cell_.j ? 1 : -1, line = std::max(cell_.j, cell_.j + step);
       cell_.j += step;
       const double along = std::clamp(source.x - cell_.i, 0.0, 1.0);
-      walk_.events.push_back(
+      walk_.all.push_back(
           {2 * node(cell_.i, line), along, cell_, {cell_.i + along, double(line)}, target, arc_});
     }
   }
 
   void tip(Point source, Point target) {
-    const double x = source.x - cell_.i, y = source.y - cell_.j;
-    CurveEvent event{kNoEdge, 0.0, cell_, source, target, arc_};
-    auto end_on = [&](EdgeIndex edge, double along, Point at) {
-      event.edge = edge;
-      event.along = std::clamp(along, 0.0, 1.0);
-      event.source = at;
-    };
-    if (cell_.i == 0 && x < kBoundaryTip)
-      end_on(2 * node(0, cell_.j) + 1, y, {0.0, source.y});
-    else if (cell_.i == lattice_.nx - 1 && x > 1.0 - kBoundaryTip)
-      end_on(2 * node(lattice_.nx, cell_.j) + 1, y, {double(lattice_.nx), source.y});
-    else if (cell_.j == 0 && y < kBoundaryTip)
-      end_on(2 * node(cell_.i, 0), x, {source.x, 0.0});
-    else if (cell_.j == lattice_.ny - 1 && y > 1.0 - kBoundaryTip)
-      end_on(2 * node(cell_.i, lattice_.ny), x, {source.x, double(lattice_.ny)});
-    walk_.events.push_back(event);
+    walk_.all.push_back({kNoEdge, 0.0, cell_, source, target, arc_});
   }
 
   void joint(const SegmentPair& before, const SegmentPair& after) {
     if (dot(direction(before.source, true), direction(after.source, false)) < kCornerCosine)
-      walk_.events.push_back(
-          {kNoEdge, 0.0, cell_, after.source.at(0.0), after.target.at(0.0), arc_});
+      walk_.all.push_back({kNoEdge, 0.0, cell_, after.source.at(0.0), after.target.at(0.0), arc_});
   }
 
-  /// Two crossings of one edge with nothing between them: the curve only peeps into the next cell.
-  void cancel() {
-    std::vector<CurveEvent>& events = walk_.events;
-    auto same = [](const CurveEvent& a, const CurveEvent& b) {
-      return a.edge != kNoEdge && a.edge == b.edge;
-    };
-    std::size_t kept = 0;
-    for (std::size_t n = 0; n < events.size(); ++n) {
-      if (kept > 0 && same(events[kept - 1], events[n]))
-        --kept;
-      else
-        events[kept++] = events[n];
-    }
-    events.resize(kept);
-    if (!walk_.closed) return;
-    std::size_t first = 0;
-    while (events.size() - first > 1 && same(events[first], events.back())) {
-      ++first;
-      events.pop_back();
-    }
-    events.erase(events.begin(), events.begin() + std::ptrdiff_t(first));
-  }
-
-  void middle() {
+  CurveEvent middle() const {
     const SegmentPair& pair = segments_[segments_.size() / 2];
     const Point source = pair.source.at(0.5);
-    walk_.events.push_back(
-        {kNoEdge, 0.0, cell_of(source), source, pair.target.at(0.5), 0.5 * arc_});
+    return {kNoEdge, 0.0, cell_of(source), source, pair.target.at(0.5), 0.5 * arc_};
   }
 
   const CurvePair& curve_;
@@ -186,6 +201,34 @@ class Walker {
 
 CurveWalk walk(const CurvePair& curve, const Lattice& lattice) {
   return Walker(curve, lattice).run();
+}
+
+CurveWalk coarsened(const CurveWalk& fine, const Lattice& fine_lattice) {
+  const Lattice lattice = coarsened(fine_lattice);
+  auto halved = [](CurveEvent event) {
+    event.after = {event.after.i / 2, event.after.j / 2};
+    event.source = 0.5 * event.source;
+    event.target = 0.5 * event.target;
+    event.arc *= 0.5;
+    return event;
+  };
+  CurveWalk coarse{
+      .closed = fine.closed, .length = 0.5 * fine.length, .middle = halved(fine.middle)};
+  for (const CurveEvent& event : fine.all) {
+    if (event.edge == kNoEdge) {
+      coarse.all.push_back(halved(event));
+      continue;
+    }
+    const bool upwards = event.edge % 2 == 1;  // an edge on a line x = i
+    const EdgeIndex node = event.edge / 2;
+    const int i = int(node % (fine_lattice.nx + 1)), j = int(node / (fine_lattice.nx + 1));
+    if ((upwards ? i : j) % 2 == 1) continue;
+    CurveEvent& out = coarse.all.emplace_back(halved(event));
+    out.edge = 2 * (EdgeIndex(j / 2) * (lattice.nx + 1) + i / 2) + int(upwards);
+    out.along = 0.5 * (event.along + (upwards ? j : i) % 2);
+  }
+  set_events(coarse, lattice);
+  return coarse;
 }
 
 }  // namespace drumhead::grid

@@ -32,10 +32,17 @@ struct CurveWalk {
   std::vector<CurveEvent> events;  ///< at least one
   bool closed = false;
   double length = 0.0;
+  // What a coarser lattice needs besides.
+  std::vector<CurveEvent> all;  ///< double crossings too, tips where they are
+  CurveEvent middle;            ///< the event of a curve without any
 };
 
 /// Events of one curve, in order, double crossings cancelled. Throws std::invalid_argument when the
 /// source leaves the lattice.
 CurveWalk walk(const CurvePair& curve, const Lattice& lattice);
+
+/// The walk on the next coarser lattice, every other line of the fine one, without the curve: the
+/// time it takes goes with the crossings, not with the segments.
+CurveWalk coarsened(const CurveWalk& fine, const Lattice& fine_lattice);
 
 }  // namespace drumhead::grid

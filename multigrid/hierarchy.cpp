@@ -188,10 +188,10 @@ void Hierarchy<T>::set_wanted(int l, std::vector<grid::Point> wanted) {
 template <class T>
 void Hierarchy<T>::conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
                            grid::MemoryMeter& meter) {
-  grid::Lattice on_level = lattice;
+  std::vector<grid::ConformingCells> cells =
+      grid::conform_levels(curves, lattice, size(), kConform);
   for (int l = 0; l < size(); ++l) {
-    (*this)[l].conform(grid::conform(curves, on_level, kConform), meter);
-    on_level = grid::coarsened(on_level);
+    (*this)[l].conform(std::move(cells[std::size_t(l)]), meter);
     if (l > 0)
       (*this)[l - 1].conforming->to_coarse =
           special_transfer<T>((*this)[l - 1].conforming->geometry, (*this)[l].conforming->geometry);
@@ -201,14 +201,12 @@ void Hierarchy<T>::conform(const std::vector<grid::CurvePair>& curves, const gri
 template <class T>
 void Hierarchy<T>::retarget(const std::vector<grid::CurvePair>& curves,
                             const grid::Lattice& lattice, int top) {
-  grid::Lattice on_level = lattice;
-  for (int l = 0; l < size(); ++l) {
-    if (l >= top) {
-      Level<T>& level = (*this)[l];
-      level.conforming->retarget(grid::conform(curves, on_level, kConform), level.spacing);
-      set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
-    }
-    on_level = grid::coarsened(on_level);
+  const std::vector<grid::ConformingCells> cells =
+      grid::conform_levels(curves, lattice, size(), kConform);
+  for (int l = top; l < size(); ++l) {
+    Level<T>& level = (*this)[l];
+    level.conforming->retarget(cells[std::size_t(l)], level.spacing);
+    set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
   }
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Cells that conform to curves: hand-made cases, and the properties of thousands of random scenes.
+#include <algorithm>
+#include <cstdio>
+
 #include <gtest/gtest.h>
 
 #include "support/conform_checks.h"
@@ -70,6 +73,38 @@ TEST(GridConforming, EveryPartLiesOnOneSideOfEveryClosedCurve) {
       }
     });
   }
+}
+
+bool same(const ConformingCells& a, const ConformingCells& b) {
+  auto close = [](const HeldNode& one, const HeldNode& other) {
+    return length(one.wanted - other.wanted) < 1e-5 && length(one.rest - other.rest) < 1e-5;
+  };
+  return a.cell_begin == b.cell_begin && a.cell_column == b.cell_column &&
+         a.part_node == b.part_node && a.node_column == b.node_column &&
+         std::ranges::equal(a.node, b.node, close) &&
+         std::ranges::equal(a.curve_node, b.curve_node, close);
+}
+
+// Where curves touch lines or run along them, rounding decides.
+TEST(GridConforming, LevelsAreWhatTheCurvesGiveOnEachLattice) {
+  constexpr int kLevels = 3, kScenes = 400;
+  int different = 0;
+  for (unsigned seed = 1; seed <= kScenes; ++seed) {
+    const int nx = 9 + int(seed % 9), ny = 9 + int(seed / 9 % 7);
+    RandomCurves random(seed, nx, ny);
+    const std::vector<CurvePair> curves = random.scene(false);
+    Lattice lattice = unit_lattice(nx, ny);
+    const std::vector<ConformingCells> levels = conform_levels(curves, lattice, kLevels);
+    ASSERT_EQ(levels.size(), std::size_t(kLevels));
+    for (const ConformingCells& level : levels) {
+      different += !same(level, conform(curves, lattice));
+      ASSERT_EQ(wrong_triangles(level), "") << "seed " << seed;
+      ASSERT_EQ(wrong_tiling(level), "") << "seed " << seed;
+      lattice = coarsened(lattice);
+    }
+  }
+  std::printf("%d of %d lattices differ\n", different, kLevels * kScenes);
+  EXPECT_LE(different, 0.01 * kLevels * kScenes);
 }
 
 }  // namespace

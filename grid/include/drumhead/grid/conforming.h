@@ -155,6 +155,12 @@ struct ConformingCells {
 ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
                         const ConformOptions& options = {});
 
+/// The same on `lattice` and the next coarser ones, `levels` altogether, with one look at the
+/// curves.
+std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves,
+                                            const Lattice& lattice, int levels,
+                                            const ConformOptions& options = {});
+
 /// The next coarser lattice over the same place: cells of twice the side, an odd count rounded up
 /// (the last cell overhangs the fixed edge).
 Lattice coarsened(const Lattice& fine);
