@@ -70,12 +70,15 @@ const std::array kKeys = {
         .set = set_exr<&Options::lattice_cells>,
         .path = true},
     Key{.name = "lattice_vtk",
-        .value = "VTS",
-        .bound = "the path of a .vts file",
+        .value = "VTU",
+        .bound = "the path of a .vtu or .vts file",
         .help =
             "the same for ParaView: deformed nodes in picture pixels (y down), displacement, P, "
-            "J, corner_J",
-        .set = [](const Value& v, Options& o) { return set_path(v, ".vts", o.lattice_vtk); },
+            "J, corner_J; .vtu with the triangles of cells that curves divide, .vts without",
+        .set =
+            [](const Value& v, Options& o) {
+              return set_path(v, ".vtu", o.lattice_vtk) || set_path(v, ".vts", o.lattice_vtk);
+            },
         .path = true},
 };
 

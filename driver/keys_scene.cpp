@@ -144,10 +144,11 @@ const std::array kKeys = {
         .set = set_weight},
     Key{.name = "curve_method",
         .value = "NAME",
-        .bound = "one of: averaged, conforming",
+        .bound = "one of: automatic, averaged, conforming",
         .help =
             "averaged: curves are met on average in each cell, an error of first order in the "
-            "cell size; conforming: cells are divided along them, second order, weight inf only",
+            "cell size; conforming: cells are divided along them, second order, weight inf only; "
+            "automatic: conforming wherever that is known to work",
         .fallback = "averaged",
         .set = set_curve_method},
     Key{.name = "exact",

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lattice_files.h"
 
-#include <OpenImageIO/strutil.h>
-#include <bit>
-#include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "float_exr.h"
+#include "vtk_array.h"
 
 namespace drumhead::driver {
 namespace {
@@ -29,38 +26,9 @@ FloatExr lattice_exr(const Solution& s, int columns, int rows, std::vector<std::
   return {all, all, std::move(channels), {{"drumhead:lattice", place.str()}}};
 }
 
-/// An array of VTK's "binary" format: base64 of the number of bytes and the values.
-class Array {
- public:
-  Array(std::ostream& stream, const std::string& name, int components, std::size_t values)
-      : stream_(stream) {
-    stream_ << "<DataArray type=\"Float64\" Name=\"" << name << "\" NumberOfComponents=\""
-            << components << "\" format=\"binary\">";
-    const std::uint64_t bytes = values * sizeof(double);
-    append(&bytes, sizeof bytes);
-  }
-  ~Array() { stream_ << OIIO::Strutil::base64_encode(pending_) << "</DataArray>\n"; }
-  Array(const Array&) = delete;
-  Array& operator=(const Array&) = delete;
-
-  void add(double value) { append(&value, sizeof value); }
-
- private:
-  void append(const void* bytes, std::size_t count) {
-    constexpr std::size_t kGroups = 3 * 8192;  // of three bytes, which are four letters
-    pending_.append(static_cast<const char*>(bytes), count);
-    if (pending_.size() < kGroups) return;
-    stream_ << OIIO::Strutil::base64_encode(OIIO::string_view(pending_.data(), kGroups));
-    pending_.erase(0, kGroups);
-  }
-
-  std::ostream& stream_;
-  std::string pending_;
-};
-
 void write_nodes(const Solution& s, std::ostream& stream) {
   const auto add_vectors = [&](const char* name, const auto& vector) {
-    Array array(stream, name, 3, 3 * s.lattice.nodes());
+    VtkArray<double> array(stream, name, 3, 3 * s.lattice.nodes());
     std::size_t k = 0;
     for (int j = 0; j <= s.lattice.ny; ++j) {
       for (int i = 0; i <= s.lattice.nx; ++i, ++k) {
@@ -78,7 +46,7 @@ void write_nodes(const Solution& s, std::ostream& stream) {
 
 void write_cells(const Solution& s, std::ostream& stream) {
   const auto add_scalars = [&](const char* name, const auto& scalar) {
-    Array array(stream, name, 1, s.lattice.cells());
+    VtkArray<double> array(stream, name, 1, s.lattice.cells());
     for (int j = 0; j < s.lattice.ny; ++j) {
       for (int i = 0; i < s.lattice.nx; ++i) array.add(scalar(i, j));
     }
@@ -128,12 +96,9 @@ void write_lattice_vtk(const Solution& s, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary);
   std::ostringstream extent;
   extent << "\"0 " << s.lattice.nx << " 0 " << s.lattice.ny << " 0 0\"";
-  stream << "<?xml version=\"1.0\"?>\n<!-- drumhead " DRUMHEAD_VERSION
-            ": picture pixels, x right, y down, 0 at the left and top edge -->\n"
-         << "<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\""
-         << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
-         << "\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=" << extent.str()
-         << ">\n<Piece Extent=" << extent.str() << ">\n";
+  begin_vtk(stream, "StructuredGrid");
+  stream << "<StructuredGrid WholeExtent=" << extent.str() << ">\n<Piece Extent=" << extent.str()
+         << ">\n";
   write_nodes(s, stream);
   write_cells(s, stream);
   stream << "</Piece>\n</StructuredGrid>\n</VTKFile>\n" << std::flush;

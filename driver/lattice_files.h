@@ -21,7 +21,12 @@ void write_lattice(const multigrid::Solution& solution, const std::filesystem::p
 void write_lattice_cells(const multigrid::Solution& solution, const std::filesystem::path& file);
 
 /// VTK XML StructuredGrid (.vts) of doubles: points the deformed nodes x̂ with z = 0, `displacement`
-/// at the points, P, J and corner_J in the cells.
+/// at the points, P, J and corner_J in the cells. Of cells that curves divide it has the four
+/// corners alone.
 void write_lattice_vtk(const multigrid::Solution& solution, const std::filesystem::path& file);
+
+/// VTK XML UnstructuredGrid (.vtu) with the same arrays: undivided cells as quads, the others as
+/// their triangles, each with its own P and J.
+void write_lattice_vtu(const multigrid::Solution& solution, const std::filesystem::path& file);
 
 }  // namespace drumhead::driver

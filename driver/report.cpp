@@ -90,6 +90,7 @@ std::string report_json(const multigrid::Solution& solution, const std::string& 
                {"model", model},
                {"exact", report.exact},
                {"solver", multigrid::name(report.solver)},
+               {"curve_method", multigrid::name(report.curve_method)},
                {"lattice",
                 {{"nx", lattice.nx},
                  {"ny", lattice.ny},

@@ -122,7 +122,9 @@ void write_lattice_files(const Options& options, const multigrid::Solution& solu
                          const Outputs& outputs) {
   if (!options.lattice_file.empty()) write_lattice(solution, outputs[options.lattice_file]);
   if (!options.lattice_cells.empty()) write_lattice_cells(solution, outputs[options.lattice_cells]);
-  if (!options.lattice_vtk.empty()) write_lattice_vtk(solution, outputs[options.lattice_vtk]);
+  if (const fs::path& file = options.lattice_vtk; !file.empty())
+    has_extension(file, ".vtu") ? write_lattice_vtu(solution, outputs[file])
+                                : write_lattice_vtk(solution, outputs[file]);
 }
 
 /// What the report says of the maps; nothing if none was asked for, or no report.

@@ -31,7 +31,9 @@ class Conformer {
     }
     hold_nodes();
     share_pressures(cells_, options_.least_area);
-    cells_.simplified_cells = int(simplified_.size());
+    for (const auto& [number, how] : simplified_)
+      cells_.simplified_cells.push_back(
+          {double(number % lattice_.nx) + 0.5, double(number / lattice_.nx) + 0.5});
     cells_.lost_tips = nodes_.lost_tips;
     return std::move(cells_);
   }

@@ -135,7 +135,7 @@ void Placer::claim_by_tip(int n) {
     }
   }
   if (best.node < 0) {
-    ++nodes_.lost_tips;
+    nodes_.lost_tips.push_back(event.source);
     return;
   }
   tips_.emplace(best.node, event.source);

@@ -41,7 +41,7 @@ struct CurveNodes {
   std::vector<Point> curve_rest;
   std::vector<Visit> visits;
   std::vector<Chord> chords;
-  int lost_tips = 0;
+  std::vector<Point> lost_tips;  ///< in cells
 
   /// Index into `held`, −1 if a lattice node is not held.
   int find_held(Vertex vertex) const;

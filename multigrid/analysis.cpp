@@ -58,6 +58,11 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
   return reports;
 }
 
+double triangle_J(const kernels::MapTriangle& triangle) {
+  const auto [before, after] = areas(triangle);
+  return after / before;
+}
+
 CellJ cell_J(const Solution& s, int i, int j) {
   const kernels::SplitCellsView split = s.split.view();
   if (const int c = split.find(i, j); c >= 0) {
@@ -82,10 +87,32 @@ CellJ cell_J(const Solution& s, int i, int j) {
                     grid::cross(p11 - p01, p01 - p00), grid::cross(p11 - p01, p11 - p10)})};
 }
 
+namespace {
+
+/// The rest centre of a folded cell, of a split one that of its most inverted triangle.
+grid::Point fold_place(const Solution& s, int i, int j) {
+  const kernels::SplitCellsView split = s.split.view();
+  const int c = split.find(i, j);
+  if (c < 0) return s.lattice.rest_px(i, j) + 0.5 * s.lattice.cell_px * grid::Point{1.0, 1.0};
+  grid::Point place;
+  double least = std::numeric_limits<double>::infinity();
+  for (int t = split.triangle_begin[c]; t < split.triangle_begin[c + 1]; ++t) {
+    const kernels::MapTriangle& triangle = split.triangle[t];
+    const double J = triangle_J(triangle);
+    if (J >= least) continue;
+    least = J;
+    place = {};
+    for (const kernels::Position& corner : triangle.rest)
+      place = place + (1.0 / 3.0) * grid::Point{corner.x, corner.y};
+  }
+  return place;
+}
+
+}  // namespace
+
 FoldReport find_folds(const Solution& s) {
   FoldReport folds;
   folds.min_J = folds.min_corner_J = 1.0;
-  const double h = s.lattice.cell_px;
   for (int j = 0; j < s.lattice.ny; ++j)
     for (int i = 0; i < s.lattice.nx; ++i) {
       const auto [centre, least] = cell_J(s, i, j);
@@ -94,7 +121,7 @@ FoldReport find_folds(const Solution& s) {
       folds.inverted_cells += centre < 0.0;
       folds.folded_cells += least < 0.0;
       if (least < 0.0 && folds.places_px.size() < kMostPlaces)
-        folds.places_px.push_back(s.lattice.rest_px(i, j) + grid::Point{0.5 * h, 0.5 * h});
+        folds.places_px.push_back(fold_place(s, i, j));
     }
   return folds;
 }

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "level_change.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -118,6 +121,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
   const int start = start_level(hierarchy, options.smallest_feature);
   ClampSchedule clamp;
   NewtonOptions newton_options;
+  std::vector<LevelChange> changes;
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
     auto progress = [&](int step) {
@@ -127,6 +131,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
             {level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
     };
     Newton<T> newton(hierarchy, l, meter);
+    std::optional<LevelCopy<T>> coarse;
     newton_options.linear = linear_options(level, l == start);
     newton_options.linear.solver = options.solver;
     newton_options.most_steps = kLevelSteps;
@@ -142,6 +147,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     } else {
       // What a finer level changes is small: the positive definite Hessian does, until it does not.
       clamp.theta = 1.0;
+      if (level.conforming) coarse.emplace(hierarchy[l + 1], meter);
       hierarchy.prolong_state(l);
     }
     if (l == 0 && options.tolerance_cells > 0.0) {
@@ -173,12 +179,16 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
-    const bool estimated = l != start;
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    report.discretisation_rms_px =
-        estimated ? options.discretisation_share * done.change_rms * cell_px : unknown;
-    report.discretisation_max_px =
-        estimated ? options.discretisation_share * done.change_max * cell_px : unknown;
+    LevelChange change{done.change_rms, done.change_max};
+    double share =
+        l == start ? std::numeric_limits<double>::quiet_NaN() : options.discretisation_share;
+    if (coarse) {
+      change = coarse->change(hierarchy[l + 1], level);
+      changes.push_back(change);
+      share = error_share(options.tips, changes);
+    }
+    report.discretisation_rms_px = share * change.rms * cell_px;
+    report.discretisation_max_px = share * change.max * cell_px;
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
     if (report.status == Status::not_finite) return;
   }

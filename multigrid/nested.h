@@ -15,8 +15,9 @@ struct NestedOptions {
   double tolerance_cells = 0.0;   ///< 0: a tenth of the estimated discretisation error
   double smallest_feature = 0.0;  ///< extent of the smallest curve in finest cells
   /// Discretisation error of a level, as a share of what it changes in the interpolated solution of
-  /// the coarser one. For second order 1/3.
+  /// the coarser one.
   double discretisation_share = kErrorOfChange;
+  bool tips = false;  ///< of conforming cells: curves end within the lattice
   /// Gives level `start` and, where they need them, coarser ones the targets at share t of a load
   /// path; 1: the targets themselves. Empty: no path is needed.
   std::function<void(int start, double t)> set_targets;

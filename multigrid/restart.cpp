@@ -2,6 +2,9 @@
 #include "restart.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "conforming_visits.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -40,12 +43,55 @@ void set_state(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, const Soluti
     }
 }
 
+/// P of an earlier solution at a point of cell (i, j): of the triangle there, the nearest of a
+/// split cell if none is.
+double pressure_at(const Solution& start, int i, int j, grid::Point at_px) {
+  const kernels::SplitCellsView split = start.split.view();
+  const int c = split.find(i, j);
+  if (c < 0 || start.split.pressure.empty())
+    return start.pressure[std::size_t(j) * std::size_t(start.lattice.nx) + std::size_t(i)];
+  int nearest = split.triangle_begin[c];
+  double most = -std::numeric_limits<double>::infinity();
+  for (int t = nearest; t < split.triangle_begin[c + 1]; ++t) {
+    double least = std::numeric_limits<double>::infinity();  // distance inside the three sides
+    for (std::size_t k = 0; k < 3; ++k) {
+      const kernels::Position a = split.triangle[t].rest[k],
+                              b = split.triangle[t].rest[(k + 1) % 3];
+      const grid::Point side{b.x - a.x, b.y - a.y};
+      least = std::min(least, grid::cross(side, at_px - grid::Point{a.x, a.y}) / length(side));
+    }
+    if (least <= most) continue;
+    most = least;
+    nearest = t;
+  }
+  return start.split.pressure[std::size_t(nearest)];
+}
+
+/// Held nodes at their targets and pressures of the parts.
+template <class T>
+void set_conforming_state(Level<T>& level, const Solution& start) {
+  ConformingLevel<T>& conforming = *level.conforming;
+  set_known<T>(conforming, level.ux.view(), level.uy.view());
+  if (start.pressure.empty()) return;
+  const grid::Lattice& lattice = start.lattice;
+  for_special(conforming.geometry, [&](int c, int i, int j) {
+    for_parts(conforming.geometry, c, [&](int p) {
+      const grid::Point centre = conforming.geometry.part_centre[std::size_t(p)];
+      conforming.pressure[std::size_t(p)] =
+          T(pressure_at(start, i, j, lattice.origin_px + lattice.cell_px * centre));
+    });
+  });
+}
+
 template <class T>
 void clear_state(Level<T>& level) {
   level.ux.clear();
   level.uy.clear();
   level.pressure.clear();
   std::ranges::fill(level.q, T(0));
+  if (!level.conforming) return;
+  std::ranges::fill(level.conforming->pressure, T(0));
+  set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
 }
 
 }  // namespace
@@ -69,6 +115,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
                         SolveReport& report) {
   set_state(hierarchy, cuts, start);
   Level<T>& level = hierarchy[0];
+  if (level.conforming) set_conforming_state(level, start);
   const double cell_px = start.lattice.cell_px;
   NewtonOptions newton;
   newton.most_steps = kMostSteps;

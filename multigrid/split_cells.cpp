@@ -48,7 +48,7 @@ void set_split_cells(const grid::ConformingCells& cells,
   assert(curve_displacement_px.size() == cells.curve_node.size());
   const Nodes nodes(cells, curve_displacement_px, solution);
   SplitCells& split = solution.split;
-  split = {cells.cell_begin, cells.cell_column, {0}, {}};
+  split = {cells.cell_begin, cells.cell_column, {0}, {}, {}};
   split.triangle.reserve(cells.triangle.size());
   for (int j = 0; j < cells.ny; ++j)
     for (int c = cells.cell_begin[std::size_t(j)]; c < cells.cell_begin[std::size_t(j) + 1]; ++c) {

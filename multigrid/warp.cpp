@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -14,6 +15,8 @@
 #include <drumhead/kernels/threads.h>
 
 #include "analysis.h"
+#include "conforming_notes.h"
+#include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
 #include "restart.h"
@@ -40,24 +43,6 @@ constexpr double kNotableGap = 1.0;
 // The q-jump of the default path and of the preconditioner.
 constexpr double kJump = 0.005;
 
-void check_conforming(const WarpProblem& problem, const SolverOptions& options) {
-  const kernels::Model model = problem.material.model;
-  if (kernels::isotropic(model))
-    throw std::invalid_argument("curve method conforming: must be averaged for model " +
-                                std::string(kernels::name(model)) +
-                                "; conforming curves need crpm or harmonic");
-  for (const grid::CurvePair& curve : problem.curves)
-    if (!std::isinf(curve.weight))
-      throw std::invalid_argument("curve '" + curve.name +
-                                  "': weight = " + std::to_string(curve.weight) +
-                                  ": must be inf with conforming curves");
-  if (options.exact)
-    throw std::invalid_argument("exact rows belong to averaged curves, not to conforming ones");
-  if (options.solver != Solver::gcr)
-    throw std::invalid_argument(std::string("solver ") + name(options.solver) +
-                                ": conforming curves need gcr");
-}
-
 void check(const WarpProblem& problem, const SolverOptions& options) {
   const grid::Lattice& lattice = problem.lattice;
   if (lattice.nx < 1 || lattice.ny < 1)
@@ -82,7 +67,6 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
     throw std::invalid_argument("solver " + std::string(name(options.solver)) + ": must be " +
                                 name(Solver::gcr) + " for model " +
                                 std::string(kernels::name(model)));
-  if (options.curve_method == CurveMethod::conforming) check_conforming(problem, options);
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 0");
@@ -114,6 +98,21 @@ bool has_pressure(const grid::Material& material) {
   if (material.model != kernels::Model::crpm) return false;
   if (material.kappa_cells.empty()) return material.kappa > 0.0;
   return std::ranges::any_of(material.kappa_cells, [](float kappa) { return kappa > 0.0f; });
+}
+
+/// Whether a curve ends within the lattice: solutions are singular there.
+bool has_tips(const WarpProblem& problem) {
+  const grid::Lattice& lattice = problem.lattice;
+  const grid::Point low = lattice.origin_px, high = lattice.rest_px(lattice.nx, lattice.ny);
+  const double near = lattice.cell_px / 4.0;
+  auto inside = [&](grid::Point p) {
+    return std::min({p.x - low.x, p.y - low.y, high.x - p.x, high.y - p.y}) > near;
+  };
+  return std::ranges::any_of(problem.curves, [&](const grid::CurvePair& curve) {
+    const grid::Point first = curve.source.front().control[0],
+                      last = curve.source.back().control[3];
+    return grid::length(last - first) > 1e-3 * near && (inside(first) || inside(last));
+  });
 }
 
 /// Extent of the smallest source curve, in cells.
@@ -153,6 +152,10 @@ void export_split_cells(const Hierarchy<T>& hierarchy, Solution& solution) {
   for (const grid::HeldNode& node : level.geometry.curve_node)
     displacement.push_back(solution.lattice.cell_px * node.wanted);
   set_split_cells(level.geometry, displacement, solution);
+  if (solution.pressure.empty()) return;
+  for (std::size_t p = 0; p < level.pressure.size(); ++p)
+    solution.split.pressure.resize(std::size_t(level.geometry.part_triangle_begin[p + 1]),
+                                   double(level.pressure[p]));
 }
 
 template <class T>
@@ -215,9 +218,14 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
                        .exact = options.exact,
                        .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
                        .smallest_feature = smallest_feature(problem),
-                       .discretisation_share = conforming ? 1.0 / 3.0 : kErrorOfChange,
+                       .discretisation_share = kErrorOfChange,
+                       .tips = false,
                        .set_targets = {},
                        .progress = options.progress};
+  if (conforming) {
+    nested.tips = has_tips(problem);
+    nested.discretisation_share = nested.tips ? kErrorWithTips : kErrorOfSecondOrder;
+  }
   if (largest_turn(problem.curves) > kLoadPathTurn)
     nested.set_targets = [&](int start, double t) {
       const std::vector<grid::CurvePair> curves =
@@ -227,16 +235,23 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
       else
         hierarchy.set_wanted(start, grid::cut(curves, problem.lattice, most_weight).wanted);
     };
-  if (!options.start || options.exact || conforming ||
+  if (!options.start || options.exact ||
+      options.start->report.curve_method != options.curve_method ||
       !continue_iteration(hierarchy, cuts, *options.start, nested, meter, report))
     nested_iteration(hierarchy, nested, problem.lattice.cell_px, meter, report);
   report.solve_seconds = seconds_since(solving);
 
   report.solver_bytes = meter.peak() + hierarchy.scratch().bytes();
   report.energy = energies(hierarchy, cuts);
+  if (conforming && hierarchy[0].pressure)
+    set_part_means<T>(*hierarchy[0].conforming, hierarchy[0].pressure.view());
   export_state(hierarchy, solution);
   solution.forces = curve_forces(hierarchy, cuts);
-  if (conforming) export_split_cells(hierarchy, solution);
+  if (conforming) {
+    export_split_cells(hierarchy, solution);
+    std::ranges::move(conforming_notes(hierarchy[0].conforming->geometry, problem),
+                      std::back_inserter(report.notes));
+  }
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }
@@ -281,16 +296,6 @@ std::optional<Solver> solver_named(std::string_view wanted) {
   return std::nullopt;
 }
 
-const char* name(CurveMethod method) {
-  return method == CurveMethod::averaged ? "averaged" : "conforming";
-}
-
-std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
-  for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming})
-    if (wanted == name(method)) return method;
-  return std::nullopt;
-}
-
 const char* name(Status status) {
   switch (status) {
     case Status::converged:
@@ -307,12 +312,14 @@ const char* name(Status status) {
   return "";
 }
 
-Solution solve(const WarpProblem& problem, const SolverOptions& options) {
-  check(problem, options);
-  const kernels::ThreadLimit threads(options.threads);
+namespace {
+
+/// By `options.curve_method`, which is not automatic.
+Solution solve_by(const WarpProblem& problem, const SolverOptions& options) {
   Solution solution{.lattice = problem.lattice};
   solution.report.exact = options.exact;
   solution.report.solver = options.solver;
+  solution.report.curve_method = options.curve_method;
   solution.report.isa = kernels::name(kernels::current_isa());
   solution.report.threads = kernels::thread_limit();
   const double tolerance_cells = options.tolerance_px / problem.lattice.cell_px;
@@ -320,6 +327,41 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
     solve_in<double>(problem, options, solution);
   else
     solve_in<float>(problem, options, solution);
+  return solution;
+}
+
+/// The same scene with averaged rows, where conforming cells did not converge. The one of both that
+/// did is the solution; what the other took is counted.
+Solution solve_averaged_instead(const WarpProblem& problem, SolverOptions options,
+                                Solution conforming) {
+  options.curve_method = CurveMethod::averaged;
+  options.start = nullptr;
+  Solution averaged = solve_by(problem, options);
+  const bool better = averaged.report.status == Status::converged;
+  const std::string ended =
+      std::string("conforming cells ended with '") + name(conforming.report.status) + "'";
+  if (better) std::swap(averaged, conforming);
+  SolveReport &report = conforming.report, &other = averaged.report;
+  report.cut_seconds += other.cut_seconds;
+  report.solve_seconds += other.solve_seconds;
+  report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
+  report.solver_bytes = std::max(report.solver_bytes, other.solver_bytes);
+  report.notes.push_back(better ? ended + "; the curves are met on average in each cell instead"
+                                : ended + ", and so did averaged rows");
+  return conforming;
+}
+
+}  // namespace
+
+Solution solve(const WarpProblem& problem, const SolverOptions& options) {
+  check(problem, options);
+  SolverOptions chosen = options;
+  chosen.curve_method = chosen_method(problem, options);
+  const kernels::ThreadLimit threads(options.threads);
+  Solution solution = solve_by(problem, chosen);
+  if (options.curve_method == CurveMethod::automatic &&
+      chosen.curve_method == CurveMethod::conforming && solution.report.status != Status::converged)
+    solution = solve_averaged_instead(problem, chosen, std::move(solution));
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);

@@ -67,7 +67,7 @@ TEST_F(DriverCommand, RefusesMapsThatAreNoExrAndConventionsThatAreNone) {
   expect_refused({"warp", "photo.png", "curves.svg", "--forward-map", "f.png"},
                  {"--forward-map f.png", "must be the path of an .exr file"});
   expect_refused({"warp", "photo.png", "curves.svg", "--lattice-vtk", "l.vtk"},
-                 {"--lattice-vtk l.vtk", "must be the path of a .vts file"});
+                 {"--lattice-vtk l.vtk", "must be the path of a .vtu or .vts file"});
   expect_refused({"warp", "photo.png", "curves.svg", "--map-convention", "uv"},
                  {"--map-convention uv", "must be one of: st, pixel, displacement"});
   expect_refused(

@@ -83,7 +83,8 @@ std::vector<unsigned char> decoded(const std::string& text) {
 }
 
 /// A <DataArray> of format "binary", header_type "UInt64".
-std::vector<double> values_of(const pugi::xml_node& array) {
+template <class T = double>
+std::vector<T> values_of(const pugi::xml_node& array) {
   const std::string text = array.child_value();
   EXPECT_EQ(text.size() % 4, 0u);
   const auto bytes = decoded(text);
@@ -91,8 +92,8 @@ std::vector<double> values_of(const pugi::xml_node& array) {
   if (bytes.size() < sizeof size) throw std::runtime_error("an array without its size");
   std::memcpy(&size, bytes.data(), sizeof size);
   EXPECT_EQ(bytes.size(), sizeof size + size);
-  std::vector<double> values(size / sizeof(double));
-  std::memcpy(values.data(), bytes.data() + sizeof size, values.size() * sizeof(double));
+  std::vector<T> values(size / sizeof(T));
+  std::memcpy(values.data(), bytes.data() + sizeof size, values.size() * sizeof(T));
   return values;
 }
 
@@ -176,10 +177,68 @@ TEST_F(DriverLattice, VtkArraysOfAnyLengthAreWhole) {
   }
 }
 
+/// Three cells in a row, the middle one divided along its diagonal, whose upper node moved with it.
+multigrid::Solution split_cell() {
+  multigrid::Solution s;
+  s.lattice = {.nx = 3, .ny = 1, .cell_px = 10.0};
+  s.u_px.assign(8, 0.0);
+  s.v_px.assign(8, 0.0);
+  s.u_px[5] = 2.0;  // the node at (10, 10)
+  s.pressure = {1, 2, 3};
+  s.split.row_begin = {0, 1};
+  s.split.column = {1};
+  s.split.triangle_begin = {0, 2};
+  s.split.triangle = {{{{10, 0}, {20, 0}, {20, 10}}, {{0, 0}, {0, 0}, {0, 0}}},
+                      {{{10, 0}, {20, 10}, {10, 10}}, {{0, 0}, {0, 0}, {2, 0}}}};
+  s.split.pressure = {-1, 5};
+  return s;
+}
+
+TEST_F(DriverLattice, VtuHasTheTrianglesOfDividedCellsAndTheQuadsOfOthers) {
+  write_lattice_vtu(split_cell(), scratch / "l.vtu");
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file((scratch / "l.vtu").c_str()));
+  const pugi::xml_node top = document.child("VTKFile");
+  EXPECT_STREQ(top.attribute("type").value(), "UnstructuredGrid");
+  const pugi::xml_node piece = top.child("UnstructuredGrid").child("Piece");
+  EXPECT_EQ(piece.attribute("NumberOfPoints").as_int(), 8);  // none twice
+  EXPECT_EQ(piece.attribute("NumberOfCells").as_int(), 4);
+  const auto array = [&](const char* section, const char* name) {
+    return piece.child(section).find_child_by_attribute("DataArray", "Name", name);
+  };
+  const auto doubles = [&](const char* section, const char* name) {
+    return values_of<double>(array(section, name));
+  };
+  EXPECT_STREQ(array("Cells", "types").attribute("type").value(), "UInt8");
+  EXPECT_STREQ(array("Cells", "offsets").attribute("type").value(), "Int64");
+  EXPECT_EQ(values_of<std::uint8_t>(array("Cells", "types")),
+            (std::vector<std::uint8_t>{9, 5, 5, 9}));
+  EXPECT_EQ(values_of<std::int64_t>(array("Cells", "offsets")),
+            (std::vector<std::int64_t>{4, 7, 10, 14}));
+  EXPECT_EQ(doubles("CellData", "P"), (std::vector<double>{1, -1, 5, 3}));
+  EXPECT_EQ(doubles("CellData", "J"), (std::vector<double>{1.1, 1, 0.8, 1}));
+  // Every cell's corners, deformed.
+  const auto nodes = values_of<std::int64_t>(array("Cells", "connectivity"));
+  const auto xhat = doubles("Points", "xhat"), moved = doubles("PointData", "displacement");
+  ASSERT_EQ(nodes.size(), 14u);
+  std::vector<double> x, y;
+  for (const std::int64_t n : nodes) {
+    x.push_back(xhat[std::size_t(3 * n)]);
+    y.push_back(xhat[std::size_t(3 * n + 1)]);
+    EXPECT_EQ(moved[std::size_t(3 * n)], x.back() == 12.0 ? 2.0 : 0.0);
+  }
+  EXPECT_EQ(x, (std::vector<double>{0, 10, 12, 0, 10, 20, 20, 10, 20, 12, 20, 30, 30, 20}));
+  EXPECT_EQ(y, (std::vector<double>{0, 0, 10, 10, 0, 0, 10, 0, 10, 10, 0, 0, 10, 10}));
+}
+
 TEST_F(DriverLattice, AFileThatCannotBeWrittenIsNamed) {
   EXPECT_NE(message_of([&] {
               write_lattice_vtk(two_cells(), scratch / "no/l.vts");
             }).find("no/l.vts: cannot be written"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              write_lattice_vtu(two_cells(), scratch / "no/l.vtu");
+            }).find("no/l.vtu: cannot be written"),
             std::string::npos);
   EXPECT_NE(message_of([&] {
               write_lattice(two_cells(), scratch / "no/l.exr");

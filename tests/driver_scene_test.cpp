@@ -123,7 +123,7 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"eps = 1", "eps = 1: must be a number from 0 to below 1"},
            {"exact = 1", "exact = 1: must be true or false"},
            {"solver = \"cg\"", "solver = 'cg': must be one of: gcr, kaczmarz, coloured-kaczmarz"},
-           {"curve_method = \"cut\"", "curve_method = 'cut': must be one of: averaged, conforming"},
+           {"curve_method = \"cut\"", "curve_method = 'cut': must be one of: automatic, averaged, conforming"},
            {"overlay = \"a.jpg\"", "overlay = 'a.jpg': must be the path of a .png file"},
            {"output = \"\"", "output = '': must be the path of a file"},
            {"kapa = 1", "scene.toml:1: kapa = 1: unknown key; a scene has picture, curves, cells"},

@@ -162,9 +162,10 @@ TEST_F(DriverWarp, TheReportHasItsKeysAndNothingThatIsNotFinite) {
             0);
   const std::string text = read_text(scratch / "r.json");
   const Json r = Json::parse(text);
-  EXPECT_EQ(names(r), (Names{"version", "status", "model", "exact", "solver", "lattice", "levels",
-                             "frame", "work_units", "work_unit_seconds", "error_px", "curves",
-                             "folds", "energy", "seconds", "memory", "isa", "threads", "notes"}));
+  EXPECT_EQ(names(r), (Names{"version",           "status",   "model",  "exact",   "solver",
+                             "curve_method",      "lattice",  "levels", "frame",   "work_units",
+                             "work_unit_seconds", "error_px", "curves", "folds",   "energy",
+                             "seconds",           "memory",   "isa",    "threads", "notes"}));
   EXPECT_EQ(names(r["lattice"]), (Names{"nx", "ny", "cell_px", "origin_px", "levels"}));
   ASSERT_FALSE(r["levels"].empty());
   EXPECT_EQ(names(r["levels"].back()), (Names{"nx", "ny", "newton"}));

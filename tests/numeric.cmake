@@ -30,12 +30,12 @@ target_link_libraries(drumhead_conforming_oracle
 drumhead_test(NAME oracle_conforming_test
   SOURCES oracle_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
-foreach(name exact default masks nested restart)
+foreach(name conforming_report exact default masks nested restart)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
-foreach(name degenerate stiff)
+foreach(name conforming_cases degenerate stiff)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/hard_cases.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)

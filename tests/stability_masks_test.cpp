@@ -19,10 +19,7 @@ struct Masked {
 };
 void PrintTo(const Masked& c, std::ostream* out) { *out << c.name; }
 
-class Masks : public testing::TestWithParam<Masked> {};
-
-TEST_P(Masks, ConvergeInBoundedSteps) {
-  const Masked& c = GetParam();
+multigrid::WarpProblem problem_of(const Masked& c) {
   scenes::Scene scene = c.scene;
   scene.kappa_mask = scenes::pinch(scenes::kStudyOffset).kappa_mask;
   multigrid::WarpProblem problem = scenes::problem(scene, c.cells, 1.0);
@@ -33,7 +30,15 @@ TEST_P(Masks, ConvergeInBoundedSteps) {
     if (c.mu_in != 1.0f || c.mu_out != 1.0f)
       material.mu_cells.push_back(inside ? c.mu_in : c.mu_out);
   }
-  const multigrid::Solution solution = multigrid::solve(problem);
+  return problem;
+}
+
+class Masks : public testing::TestWithParam<Masked> {};
+
+TEST_P(Masks, ConvergeInBoundedSteps) {
+  const Masked& c = GetParam();
+  const multigrid::Solution solution =
+      multigrid::solve(problem_of(c), {.curve_method = multigrid::CurveMethod::averaged});
   const auto& steps = solution.report.levels.back().newton;
   int cycles = 0;
   for (const multigrid::NewtonStep& step : steps) cycles += step.krylov;
@@ -46,6 +51,17 @@ TEST_P(Masks, ConvergeInBoundedSteps) {
   EXPECT_LE(int(steps.size()), c.most_steps);
   EXPECT_LE(cycles, c.most_cycles);
   EXPECT_LT(gap_cells, 0.2);
+}
+
+// Conforming cells: within a few steps of the averaged rows' bound, the curves met.
+TEST_P(Masks, ConvergeWithConformingCells) {
+  const Masked& c = GetParam();
+  const multigrid::Solution solution =
+      multigrid::solve(problem_of(c), {.curve_method = multigrid::CurveMethod::conforming});
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  EXPECT_LE(int(solution.report.levels.back().newton.size()), c.most_steps + 4);
+  EXPECT_LT(solution.report.curves.front().gap_rms_px * c.cells, 0.02);
 }
 
 const scenes::Scene kPinch = scenes::pinch(scenes::kStudyOffset),

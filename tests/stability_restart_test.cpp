@@ -2,6 +2,7 @@
 // Going on from an earlier solution: a dragged curve, released curves, a start that is of no use.
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include <drumhead/multigrid/warp.h>
 #include <gtest/gtest.h>
@@ -43,35 +44,76 @@ int cycles(const Solution& s) {
   return sum;
 }
 
-class Restart : public ::testing::TestWithParam<double> {};
+class Restart : public ::testing::TestWithParam<std::tuple<double, CurveMethod>> {};
 
 TEST_P(Restart, FollowsADraggedCurveToTheToleranceOnTheFinestLatticeAlone) {
-  WarpProblem problem =
-      scenes::problem(scenes::roundabout(45.0, scenes::kStudyOffset), 256, GetParam());
-  const Solution first = solve(problem);
+  const auto [kappa, method] = GetParam();
+  WarpProblem problem = scenes::problem(scenes::roundabout(45.0, scenes::kStudyOffset), 256, kappa);
+  const Solution first = solve(problem, {.curve_method = method});
   ASSERT_EQ(first.report.status, Status::converged);
   drag(problem.curves[0], 5.0);
-  const Solution truth = solve(problem, {.tolerance_px = 1e-3 / kPicture});
-  const Solution moved = solve(problem, {.tolerance_px = 0.5 / kPicture, .start = &first});
+  const Solution truth = solve(problem, {.curve_method = method, .tolerance_px = 1e-3 / kPicture});
+  const Solution moved =
+      solve(problem, {.curve_method = method, .tolerance_px = 0.5 / kPicture, .start = &first});
   EXPECT_EQ(moved.report.status, Status::converged);
   EXPECT_EQ(moved.report.levels.size(), 1u);
   EXPECT_GT(rms_difference_px(truth, first), 0.3);  // the drag is seen at all
   EXPECT_LT(rms_difference_px(truth, moved), 0.5);
   EXPECT_LE(cycles(moved), 6);
 }
-INSTANTIATE_TEST_SUITE_P(Kappa, Restart, ::testing::Values(0.0, 1.0, 10.0));
+INSTANTIATE_TEST_SUITE_P(Kappa, Restart,
+                         ::testing::Combine(::testing::Values(0.0, 1.0, 10.0),
+                                            ::testing::Values(CurveMethod::averaged,
+                                                              CurveMethod::conforming)));
 
-TEST(RestartRelease, AFoldedSceneReturnsToRest) {
+// Nothing has changed: the pressures of divided cells come back, too, and one step sees it.
+TEST(RestartConforming, FromItsOwnSolutionTakesOneStep) {
+  const WarpProblem problem =
+      scenes::problem(scenes::roundabout(90.0, scenes::kStudyOffset), 64, 10.0);
+  const Solution first =
+      solve(problem, {.curve_method = CurveMethod::conforming, .tolerance_px = 1e-3 / kPicture});
+  const Solution again = solve(
+      problem,
+      {.curve_method = CurveMethod::conforming, .tolerance_px = 0.01 / kPicture, .start = &first});
+  EXPECT_EQ(again.report.status, Status::converged);
+  ASSERT_EQ(again.report.levels.size(), 1u);
+  EXPECT_EQ(again.report.levels[0].newton.size(), 1u);
+  EXPECT_LT(rms_difference_px(first, again), 0.01);
+}
+
+TEST(RestartConforming, GoesOnAsTheStartDidUnlessToldOtherwise) {
+  const WarpProblem problem = scenes::problem(scenes::shift(scenes::kStudyOffset), 64, 1.0);
+  for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming}) {
+    const Solution first = solve(problem, {.curve_method = method});
+    const Solution again =
+        solve(problem, {.curve_method = CurveMethod::automatic, .start = &first});
+    EXPECT_EQ(again.report.curve_method, method);
+    EXPECT_EQ(again.report.levels.size(), 1u);
+    const CurveMethod other =
+        method == CurveMethod::averaged ? CurveMethod::conforming : CurveMethod::averaged;
+    const Solution changed = solve(problem, {.curve_method = other, .start = &first});
+    EXPECT_EQ(changed.report.curve_method, other);
+    EXPECT_GT(changed.report.levels.size(), 1u);
+  }
+}
+
+class RestartRelease : public ::testing::TestWithParam<CurveMethod> {};
+
+TEST_P(RestartRelease, AFoldedSceneReturnsToRest) {
   WarpProblem problem = scenes::problem(scenes::fold(scenes::kStudyOffset), 64, 1.0);
-  const Solution folded = solve(problem);
+  const Solution folded = solve(problem, {.curve_method = GetParam()});
   ASSERT_GT(folded.report.folds.folded_cells, 0);
   problem.curves.clear();
-  const Solution released = solve(problem, {.tolerance_px = 0.01 / kPicture, .start = &folded});
+  const Solution released = solve(
+      problem, {.curve_method = GetParam(), .tolerance_px = 0.01 / kPicture, .start = &folded});
   EXPECT_EQ(released.report.status, Status::converged);
   EXPECT_EQ(released.report.folds.folded_cells, 0);
   const Solution rest = solve(problem);
   EXPECT_LT(rms_difference_px(released, rest), 0.01);
 }
+
+INSTANTIATE_TEST_SUITE_P(Methods, RestartRelease,
+                         ::testing::Values(CurveMethod::averaged, CurveMethod::conforming));
 
 TEST(RestartRefusal, AStartOnAnotherLatticeIsNamed) {
   const scenes::Scene scene = scenes::shift(scenes::kStudyOffset);

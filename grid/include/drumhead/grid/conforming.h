@@ -128,8 +128,8 @@ struct ConformingCells {
   int pressures = 0;
 
   std::vector<HeldConflict> conflicts;  ///< farther apart than 1e-6 cells
-  int simplified_cells = 0;             ///< rule 7
-  int lost_tips = 0;                    ///< tips that hold no node (rule 7, or none was free)
+  std::vector<Point> simplified_cells;  ///< centres, in cells (rule 7)
+  std::vector<Point> lost_tips;         ///< that hold no node (rule 7, or none was free), in cells
 
   int cells() const { return int(cell_column.size()); }
   int parts() const { return int(part_area.size()); }

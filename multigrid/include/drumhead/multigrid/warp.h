@@ -49,6 +49,9 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
+  /// Conforming where that is possible and known to converge, by model, solver, kappa and curves,
+  /// else averaged; averaged, too, where conforming cells did not converge after all.
+  automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
   conforming  ///< cells divided along the curves (grid/conforming.h): second order, hard curves
 };
@@ -70,8 +73,8 @@ struct SolverOptions {
   /// A solution on the same lattice to go on from, where curves or material have changed a little
   /// or curves were taken away: Newton on the finest lattice alone, to a tenth of the
   /// discretisation error that this solution was estimated to have if no tolerance is given. Where
-  /// that does not converge, and with exact rows or conforming curves, the scene is solved from the
-  /// beginning.
+  /// that does not converge, with exact rows, and where the curves were met in another way, the
+  /// scene is solved from the beginning. Automatic goes on as the start did.
   const Solution* start = nullptr;
   int threads = 0;                                ///< OpenMP threads; 0: as OpenMP decides
   std::function<void(const Progress&)> progress;  ///< optional
@@ -109,7 +112,8 @@ struct FoldReport {
   int inverted_cells = 0;  ///< J* < 0 at the centre
   int folded_cells = 0;    ///< J < 0 at any corner
   double min_J = 1.0, min_corner_J = 1.0;
-  std::vector<grid::Point> places_px;  ///< rest centres of at most 20 folded cells
+  /// Rest centres of at most 20 folded cells, of split ones those of their most inverted triangles.
+  std::vector<grid::Point> places_px;
 };
 /// Primal values per mu and per lattice area: elastic is 1 at rest.
 struct EnergyReport {
@@ -119,6 +123,7 @@ struct SolveReport {
   Status status = Status::converged;
   std::string model = "crpm";
   Solver solver = Solver::gcr;
+  CurveMethod curve_method = CurveMethod::averaged;  ///< the way that was taken: not automatic
   bool exact = false;
   int lattice_levels = 0;
   std::vector<LevelReport> levels;  ///< levels of the nested iteration, coarsest first
