@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "support/oracle_newton.h"
+
 namespace drumhead::bench {
 namespace {
 
@@ -12,10 +14,9 @@ using Eigen::VectorXd;
 constexpr double kShare = 0.1;          // of the discretisation error, left by Newton
 constexpr double kErrorOfChange = 0.8;  // discretisation error by what a level changes
 constexpr double kCoarsestLeft = 0.01;  // cells
-constexpr int kStartCells = 32, kMostSteps = 20;
+constexpr int kStartCells = 32, kMostSteps = 40;
 
-/// A full Newton step; its RMS over the nodes in cells.
-double take_step(const LinearSolver& solve, double theta, NestedNewton& newton) {
+NewtonStep take_step(const LinearSolver& solve, double theta, NestedNewton& newton) {
   const double start = now();
   oracle::OracleSystem linear =
       oracle::assemble(newton.scene, newton.state, clamped(newton.state.P, theta));
@@ -23,9 +24,13 @@ double take_step(const LinearSolver& solve, double theta, NestedNewton& newton) 
   const double assembled = now();
   const VectorXd step = solve({newton.scene, newton.state, linear, theta});
   newton.assemble_seconds += assembled - start;
-  newton.solve_seconds += now() - assembled;
-  newton.state = oracle::moved(newton.scene, newton.state, step, 1.0);
-  return step.head(2 * newton.scene.free_nodes).norm() / double(newton.scene.n + 1);
+  const double solved = now();
+  newton.solve_seconds += solved - assembled;
+  double merit = 0.0;
+  const double t = oracle::line_search(newton.scene, newton.state, step, merit);
+  newton.state = oracle::moved(newton.scene, newton.state, step, t);
+  newton.assemble_seconds += now() - solved;
+  return {step.head(2 * newton.scene.free_nodes).norm() / double(newton.scene.n + 1), t};
 }
 
 /// Bilinear x̂ and the parent's pressure on the next finer lattice; q is found by the first step.
@@ -58,16 +63,17 @@ VectorXd clamped(const VectorXd& P, double theta) {
   return centred.cwiseMax(-theta).cwiseMin(theta);
 }
 
-int newton_steps(bool coarsest, double& theta, const std::function<double(double)>& step) {
+int newton_steps(bool coarsest, double& theta, const std::function<NewtonStep(double)>& step) {
   double change = 0.0, before = 0.0;
   for (int k = 0; k < kMostSteps; ++k) {
-    const double dx = step(theta);
-    theta = std::min(8.0 * theta, 1e6);
-    change += dx;
+    const auto [dx, t] = step(theta);
+    theta = t == 1.0 ? std::min(8.0 * theta, 1e6) : std::max(1.0, theta / 8.0);
+    change += t * dx;
     // The first step on a level is followed by one more, as its contraction is not known yet.
-    const double rate = k > 0 ? std::min(dx / before, 0.9) : 0.5;
+    const double rate = before > 0.0 ? std::min(dx / before, 0.9) : 0.5;
     const double left = dx * rate / (1.0 - rate);
-    if (left <= (coarsest ? kCoarsestLeft : kShare * kErrorOfChange * change)) return k + 1;
+    if (t == 1.0 && left <= (coarsest ? kCoarsestLeft : kShare * kErrorOfChange * change))
+      return k + 1;
     before = dx;
   }
   return kMostSteps;

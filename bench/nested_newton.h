@@ -17,9 +17,13 @@ double now();
 /// Pressures as they enter the Hessian: less their median, at most theta in size.
 Eigen::VectorXd clamped(const Eigen::VectorXd& P, double theta);
 
-/// Newton steps on one level; `step(theta)` takes one and returns the RMS over the nodes of what it
-/// changed, in cells. Returns their number, and with theta what the next level begins with.
-int newton_steps(bool coarsest, double& theta, const std::function<double(double)>& step);
+struct NewtonStep {
+  double dx = 0.0;  ///< RMS over the nodes of the full step, in cells
+  double t = 1.0;   ///< share of it that was gone
+};
+/// Newton steps on one level, of which `step(theta)` takes one. Returns their number, and with
+/// theta what the next level begins with.
+int newton_steps(bool coarsest, double& theta, const std::function<NewtonStep(double)>& step);
 
 /// Cells along a side of the lattices on the way to n, coarsest first.
 std::vector<int> nested_lattices(int n);

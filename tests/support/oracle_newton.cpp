@@ -83,8 +83,9 @@ class Merit {
   double nu_ = 0.0;
 };
 
-// Halves t from 1 until the merit falls; 0 when it never does. A change within rounding counts as a
-// fall.
+}  // namespace
+
+// A change within rounding counts as a fall.
 double line_search(const OracleScene& scene, const State& state, const VectorXd& step,
                    double& merit_now) {
   const State full = moved(scene, state, step, 1.0);
@@ -96,8 +97,6 @@ double line_search(const OracleScene& scene, const State& state, const VectorXd&
   }
   return 0.0;
 }
-
-}  // namespace
 
 double solve(const Eigen::SparseMatrix<double>& matrix, const VectorXd& right, int first_multiplier,
              VectorXd& step) {

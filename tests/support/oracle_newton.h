@@ -34,6 +34,11 @@ State harmonic(const OracleScene& scene);
 OracleResult newton(const OracleScene& scene, const std::optional<State>& start = {},
                     const NewtonOptions& options = {});
 
+/// The largest t of 1, 1/2, 1/4 … at which the merit of state + t · step has fallen, and that
+/// merit; 0 when it never does.
+double line_search(const OracleScene& scene, const State& state, const Eigen::VectorXd& step,
+                   double& merit);
+
 /// Solves matrix · step = right side for a symmetric indefinite matrix that may be (consistently)
 /// singular in its P and q blocks: those are shifted by −1e-9 for the factorisation and the shift
 /// is refined away. `first_multiplier`: index of the first P. Returns the relative residual left.
