@@ -59,3 +59,8 @@ target_include_directories(multigrid_solvers_test PRIVATE ${PROJECT_SOURCE_DIR}/
 drumhead_test(NAME stability_membranes_test
   SOURCES stability_membranes_test.cpp support/oracle_membrane.cpp support/scene_problem.cpp
   LINK drumhead_oracle drumhead::multigrid LABEL numeric)
+
+# What bench/ compares the membrane with.
+drumhead_test(NAME bench_point_warps_test
+  SOURCES bench_point_warps_test.cpp ${PROJECT_SOURCE_DIR}/bench/point_warps.cpp
+  LINK drumhead::grid Eigen3::Eigen LABEL unit)
