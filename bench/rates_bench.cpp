@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What each linear solver takes to reduce the residual of a Newton system by ten, in work units
 // (one Hessian–vector product timed in the same run), as rows of JSON (results.h): all solvers,
-// scenes and kappa.
+// scenes, kappa and weights d of the curves.
 //   rates_bench [N]      cells a side, 128 if not given
 #include <algorithm>
 #include <chrono>
@@ -57,8 +57,11 @@ Entry measure(scenes::NewtonLevel<float>& level, Solver solver) {
   return entry;
 }
 
-void run(const scenes::Scene& scene, double kappa, int n, Results& results) {
-  scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), kJump, kTheta);
+/// `weight`: of the curves, d.
+void run(const scenes::Scene& scene, double kappa, double weight, int n, Results& results) {
+  multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
+  for (grid::CurvePair& curve : problem.curves) curve.weight = weight;
+  scenes::NewtonLevel<float> level(problem, kJump, kTheta);
   const double unit = level.product_seconds<Clock>();
   for (const Solver solver : kSolvers) {
     const Entry entry = measure(level, solver);
@@ -89,9 +92,12 @@ int main(int argc, char** argv) {
   bench::Results results(argc, argv);
   const double offset = scenes::kStudyOffset, infinite = std::numeric_limits<double>::infinity();
   for (const scenes::Scene& scene :
-       {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)})
+       {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)}) {
     for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite})
-      bench::run(scene, kappa, n, results);
-  bench::run(scenes::pinch(offset), 1.0, n, results);
+      bench::run(scene, kappa, infinite, n, results);
+    for (const double kappa : {1.0, 100.0})
+      for (const double weight : {1.0, 1e2, 1e4}) bench::run(scene, kappa, weight, n, results);
+  }
+  bench::run(scenes::pinch(offset), 1.0, infinite, n, results);
   return 0;
 }

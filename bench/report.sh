@@ -38,7 +38,7 @@ while [ $# -gt 0 ]; do
 done
 
 programs="speed_bench direct_bench mesh_bench amg_bench warps_bench solve_bench curves_bench rates_bench
-  membranes_bench stability_bench resample_bench kernels_bench report"
+  membranes_bench masks_bench stability_bench resample_bench kernels_bench report"
 folder=build/bench
 results=build/report/results
 mkdir -p $results bench/pictures
@@ -96,6 +96,7 @@ if [ "$measure" ]; then
   stage warps warps_bench
   stage stability stability_bench
   stage membranes membranes_bench
+  stage masks masks_bench
   stage rates rates_bench 128
   stage rates_64 rates_bench 64
   stage rates_256 rates_bench 256

@@ -124,7 +124,8 @@ Losses rates(const Rows& rows) {
     if (text(ours, "solver") != "gcr") continue;
     const std::string where =
         scene_of(ours) + ", " + figure(value(ours, "n")) + "²" +
-        (ours.contains("weight") ? ", d " + figure(value(ours, "weight")) : std::string());
+        (std::isfinite(value(ours, "weight")) ? ", d " + figure(value(ours, "weight"))
+                                              : std::string());
     if (!ours.value("converged", true)) found.words.push_back(where + ": gcr does not converge.");
     for (const Json& peer : rows)
       if (text(peer, "solver") != "gcr" && peer.value("converged", true) &&
@@ -174,16 +175,17 @@ Losses samplers(const Rows& rows) {
 }
 
 Losses unsolved(const Rows& rows) {
-  Losses found{"Solves of drumhead's own that did not converge", {}};
+  Losses found{"Solves of drumhead's own that did not converge, or not as the tests expect", {}};
   for (const Json& row : rows) {
-    const std::string method = text(row, "method");
-    const bool peer = !method.empty() && !is_ours(row);
-    if (solved(row) || peer) continue;
-    std::string line = text(row, "table") + ": " + scene_of(row);
+    const bool peer = row.contains("method") && !is_ours(row);
+    const bool hard_case = text(row, "table") == "stability";
+    if (peer || (hard_case ? row.value("passed", false) : solved(row))) continue;
+    std::string line = text(row, "table") + ": " + text(row, "case");
+    if (row.contains("scene")) line += scene_of(row);
     if (row.contains("n")) line += ", " + figure(value(row, "n")) + "²";
-    for (const char* key : {"method", "model", "curves", "solver"})
+    for (const char* key : {"method", "model", "curves"})
       if (row.contains(key)) line += ", " + text(row, key);
-    found.words.push_back(line + ": " + text(row, "status") + ".");
+    found.words.push_back(line + ": " + text(row, hard_case ? "ended" : "status") + ".");
   }
   return found;
 }

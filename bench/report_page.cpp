@@ -164,7 +164,8 @@ std::string page_of(const Measurements& measured, const std::string& pictures) {
   for (const char* section : {"table1", "precision", "scaling", "warps"})
     parts[std::string("plots_") + section] = figures(drawn, section);
   std::string others;
-  const std::string placed = " table1 table1_memory precision tolerances rates warps stability ";
+  const std::string placed =
+      " table1 table1_memory precision tolerances rates warps stability stability_all ";
   for (const Sheet& sheet : sheets(measured)) {
     if (placed.find(" " + sheet.id + " ") == std::string::npos)
       others += html_with_title(sheet);

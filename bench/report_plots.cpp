@@ -186,15 +186,25 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
       roundabout, [](const Json& row) { return text(row, "solver"); }, place, rate);
   all.push_back(std::move(kappas));
 
-  const Rows soft = where(gcr, [](const Json& row) { return row.contains("weight"); });
+  // Only scenes that were tried with soft curves.
+  const auto like = [](const Json& a) {
+    return [&a](const Json& b) {
+      return text(a, "scene") == text(b, "scene") && value(a, "kappa") == value(b, "kappa") &&
+             value(a, "n") == value(b, "n") && !hard(b);
+    };
+  };
+  const Rows soft =
+      where(gcr, [&](const Json& row) { return std::ranges::any_of(gcr, like(row)); });
   ReportPlot weights{"rates_d",
                      "scaling",
                      "One Newton system, gcr.",
                      {.title = "Work for a factor of ten over the curves' stiffness d",
                       .x_name = "d, stiffness per length, in mu per picture side",
                       .y_name = "work units per digit"}};
+  Rows ascending = soft;
+  std::ranges::stable_sort(ascending, {}, number_of("weight"));
   weights.plot.x_words =
-      distinct(soft, [](const Json& row) { return figure(value(row, "weight")); });
+      distinct(ascending, [](const Json& row) { return figure(value(row, "weight")); });
   const auto stiffness = [words = weights.plot.x_words](const Json& row) {
     return double(std::ranges::find(words, figure(value(row, "weight"))) - words.begin());
   };
