@@ -63,8 +63,8 @@ template <class T>
       for (int n = 0; n < 4; ++n) {
         const Split<B> f = cell.at(T(n & 1), T(n >> 1));
         const B J = B(T(0.25)) * ((f.a1 * f.a1 + f.a2 * f.a2) - (f.b1 * f.b1 + f.b2 * f.b2));
-        const B lack = J - cell.c.eps + cell.shift[n];
-        lane.store(smaller(zero, cell.c.kappa * B(T(1) / m.law.relief) * lack), out[n] + k);
+        const OneSidedSquare<T, B> square(J - cell.c.eps + cell.shift[n], cell.c.onset);
+        lane.store(cell.c.kappa * B(T(1) / m.law.relief) * square.slope, out[n] + k);
       }
     });
   }

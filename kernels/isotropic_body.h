@@ -89,7 +89,7 @@ struct CellState {
 /// Reads the cells of columns 2k + parity in row j.
 template <class T>
 struct CellReader {
-  T inverse_h, mu_value, kappa_value, eps, relief;
+  T inverse_h, mu_value, kappa_value, eps, relief, onset;
   Corners<const T> ux, uy;
   const T *mu, *kappa;
   const T* shift[4];
@@ -100,6 +100,7 @@ struct CellReader {
         kappa_value(m.law.kappa.value),
         eps(m.law.eps),
         relief(m.law.relief),
+        onset(m.law.onset > T(kLeastOnset) ? m.law.onset : T(kLeastOnset)),
         ux(m.ux, j, parity),
         uy(m.uy, j, parity),
         mu(m.mu.cells ? m.mu.cells.half(j, parity) : nullptr),
@@ -132,7 +133,7 @@ struct CellReader {
     cell.g = {one + h * u.bx, h * u.by,       one + h * u.tx, h * u.ty,
               h * u.lx,       one + h * u.ly, h * u.rx,       one + h * u.ry};
     cell.c = {mu ? lane.load(mu + k) : B(mu_value), kappa ? lane.load(kappa + k) : B(kappa_value),
-              B(eps), zero};
+              B(eps), zero, B(onset)};
     // kappa c/(kappa + c), in a form that takes kappa = 0.
     if (relief > T(0)) cell.c.kappa = cell.c.kappa / (cell.c.kappa * B(T(1) / relief) + one);
     for (int n = 0; n < 4; ++n) cell.shift[n] = shift[n] ? lane.load(shift[n] + k) : zero;

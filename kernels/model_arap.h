@@ -10,16 +10,35 @@
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
+// In float, J is known no better.
+constexpr double kLeastOnset = 1e-6;
+
+/// ½ min(0, z)² with its slope's corner at 0 rounded off from −w to w, and its derivatives: all
+/// continuous, 0 above w, and from −w down those of the square. Newton's method goes to and fro
+/// between corners that act and that do not where the slope has a corner (ML at 48², kappa 1e4: 99
+/// steps; 27 on the way from w = .5 to .02).
+template <class T, class B>
+struct OneSidedSquare {
+  B value, slope, curvature;
+  OneSidedSquare(B z, B w) {
+    const B zero(T(0)), half(T(0.5)), inverse = half / w;
+    const B y = larger(zero, smaller(w - z, w + w)), beyond = larger(zero, zero - w - z);
+    const B bend = half * inverse * y * y;
+    value = B(T(1.0 / 3.0)) * bend * y + beyond * (w + half * beyond);
+    slope = zero - (bend + beyond);
+    curvature = inverse * y;
+  }
+};
+
 struct OneSided {
   template <class T, class B>
   static Moduli<B> at(const Parameters<B>& c, B ra, B rb) {
     const B zero(T(0)), half(T(0.5));
-    const B lack = half * (ra * ra - rb * rb) - c.eps + c.shift;
-    const B kappa = if_less(lack, zero, c.kappa, zero);
-    const B pressure = kappa * lack;
+    const OneSidedSquare<T, B> square(half * (ra * ra - rb * rb) - c.eps + c.shift, c.onset);
+    const B pressure = c.kappa * square.slope, kappa = c.kappa * square.curvature;
     Moduli<B> m;
     m.shape = zero;
-    m.volume = half * pressure * lack;
+    m.volume = c.kappa * square.value;
     m.a = pressure * ra;
     m.b = zero - pressure * rb;
     m.twist = pressure;

@@ -19,6 +19,11 @@ constexpr int kMostStartCells = 128;
 constexpr int kStartSteps = 60;
 // arap with a large kappa: the way out of folds is long, and its steps are cheap.
 constexpr int kFoldSteps = 200;
+// Error there, in cells, where no tolerance was asked for: minima are many and flat.
+constexpr double kFoldTolerance = 0.03;
+// Onset of the corners' resistance at the end, in J, likewise, and on levels that only start the
+// next one; 0 where a tolerance was asked for.
+constexpr double kOnset = 0.02, kCoarseOnset = 0.1;
 constexpr int kLevelSteps = 20;
 constexpr int kPathSteps = 12;
 constexpr int kStepsPerPathStep = 4;
@@ -161,6 +166,9 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     if (level.solid.law.relief > T(0)) {
       newton_options.most_steps = kFoldSteps;
       newton_options.linear.content = newton_options.linear.reduction;
+      if (l == start && (l > 0 || options.tolerance_cells == 0.0))
+        newton_options.tolerance_rms = kFoldTolerance * double(level.spacing);
+      newton_options.onset = l > 0 ? kCoarseOnset : options.tolerance_cells > 0.0 ? 0.0 : kOnset;
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;

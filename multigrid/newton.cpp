@@ -10,6 +10,7 @@
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
 
+#include "corners.h"
 #include "newton_judge.h"
 
 namespace drumhead::multigrid {
@@ -20,11 +21,6 @@ constexpr double kShortestStep = 1e-4;
 constexpr double kExactTheta = 1e6;
 // Pressures looked at for the median; the clamp does not need it exactly.
 constexpr int kMedianSamples = 1 << 12;
-// arap: corners get stiffer, by this factor and up to this many mu, then their pressures move, each
-// time the force has fallen to this share of what the last move made it.
-constexpr double kReliefGrows = 3.0, kMostRelief = 300.0, kFollowed = 0.3;
-// arap: kappa from which folded corners are not accepted.
-constexpr double kAsInequality = 1e3;
 // neohookean: no J of a solution is below this.
 constexpr double kLeastFloor = 1e-3;
 // A full step is taken without asking the merit when the norm of all equations falls below this
@@ -116,6 +112,16 @@ double Newton<T>::curve_merit(double step) const {
   return penalty_ * sum;
 }
 
+/// Σ q⁺·(b − W (x̂ + step d)): with the membrane's energy the Lagrangian, whose slope along a step
+/// of Newton's method is −dᵀ H d.
+template <class T>
+double Newton<T>::curve_work(double step) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < gap_.size(); ++k)
+    sum += (double(level_.q[k]) + double(level_.dq[k])) * (gap_[k] + step * slope_[k]);
+  return sum;
+}
+
 template <class T>
 double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
@@ -132,9 +138,12 @@ template <class T>
 double Newton<T>::line_search(double longest) {
   prepare_curve_merit();
   const kernels::Membrane<T> membrane = level_.membrane();
+  // arap with corners: gaps counted absolutely outweigh them, and what the linear solver leaves of
+  // the gaps would shorten steps (ML at 192², kappa 1e4: 109 steps, 70 with the Lagrangian).
+  const bool lagrangian = level_.solid.law.relief > T(0);
   auto merit = [&](double step) {
     const kernels::EnergySums sums = kernels::energy<T>(membrane, level_.d.view(), T(step));
-    return sums.elastic + sums.volume_merit + curve_merit(step);
+    return sums.elastic + sums.volume_merit + (lagrangian ? curve_work(step) : curve_merit(step));
   };
   const double before = merit(0.0);
   // Cell energies are rounded, and so is the gap of every row.
@@ -178,29 +187,6 @@ void Newton<T>::update(double step, bool pressure) {
   for (std::size_t k = 0; pressure && k < level_.d.listed.size(); ++k)
     level_.conforming->pressure[k] += T(step) * level_.d.listed[k];
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
-}
-
-/// arap, once the state has followed the last move: stiffer corners, and from kMostRelief on a step
-/// of the method of multipliers. Its pressures run away while corners are deep in a fold.
-template <class T>
-void Newton<T>::move_corners() {
-  Solid<T>& solid = level_.solid;
-  if (double(solid.law.relief) < kMostRelief)
-    solid.law.relief = T(std::min(kMostRelief, kReliefGrows * double(solid.law.relief)));
-  else
-    kernels::update_corner_pressure<T>(
-        level_.membrane(), {solid.shift[0].view(), solid.shift[1].view(), solid.shift[2].view(),
-                            solid.shift[3].view()});
-  norm_ = moved_norm_ = force_norm(true);
-}
-
-/// arap: whether the state is as free of folds as kappa asks for; from 1e3 on it stands for an
-/// inequality, and a tolerance reached in a fold is no end.
-template <class T>
-bool Newton<T>::unfolded() const {
-  const kernels::Law<T>& law = level_.solid.law;
-  if (law.relief == T(0) || double(law.kappa.value) < kAsInequality) return true;
-  return kernels::energy<T>(level_.membrane(), {}, T(0)).least_J > 0.0;
 }
 
 /// neohookean: true if the law had to be brought closer to the logarithm than it was for the state.
@@ -272,7 +258,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   LinearOptions linear_options = options.linear;
   double rms_before = 0.0, longest = 1.0;
   int in_circles = 0;
-  norm_ = moved_norm_ = force_norm(level_.nonlinear());
+  Corners<T> corners(level_, options.onset);
+  bool followed = false;
+  norm_ = force_norm(level_.nonlinear());
+  corners.moved_to(norm_);
   for (int n = 0; n < options.most_steps; ++n) {
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
@@ -296,8 +285,12 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.residual = linear.residual;
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
-    const bool relieved = level_.solid.law.relief > T(0), ends = judge.ends_with(step, precision());
-    if (ends && (!relieved || (followed_ && unfolded())) && !lower_floor()) return report;
+    const bool ends = judge.ends_with(step, precision());
+    const bool there = !corners.act() || (followed && corners.last());
+    if (ends && there && !lower_floor()) {
+      if (corners.act() && !corners.unfolded()) report.status = Status::stalled;
+      return report;
+    }
     // A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
     // ends in the middle.
     const bool accurate = linear.residual <= kCareful;
@@ -306,11 +299,15 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     longest = in_circles >= 2 ? 0.5 : 1.0;
     rms_before = rms;
     if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
-    followed_ = relieved && !shortened && (ends || norm_ < kFollowed * moved_norm_);
-    if (followed_) move_corners();
+    followed = corners.act() && !shortened && (ends || corners.followed(norm_));
+    if (followed) {
+      corners.move();
+      norm_ = force_norm(true);
+      corners.moved_to(norm_);
+    }
     if (shortened && clamp.theta > 1.0)
       clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
-    else if (step.step == 1.0 &&
+    else if (step.step == 1.0 && !corners.act() &&
              norm_ > std::max(accurate ? 0.0 : kSlow, kModelError * linear.residual) * norm)
       clamp.theta = std::min(clamp.theta * kGrow, kExactTheta);
   }

@@ -33,6 +33,7 @@ struct NewtonOptions {
   /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor
   /// is expected to do before it is taken.
   std::vector<double> expected_rates;
+  double onset = 0.0;  ///< arap: of the one-sided term at the end (corners.h)
   LinearOptions linear;
 };
 
@@ -70,14 +71,13 @@ class Newton {
   void set_clamp(double theta);
   double median_pressure() const;
   double curve_merit(double step) const;
+  double curve_work(double step) const;
   void prepare_curve_merit();
   double force_norm(bool pressure);
   double line_search(double longest);
   double take_step(double norm_before, double longest);
   int inverted_cells() const;
   void update(double step, bool pressure);
-  void move_corners();
-  bool unfolded() const;
   bool lower_floor();
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
@@ -88,8 +88,6 @@ class Newton {
   std::vector<double> gap_, slope_;  ///< per curve row: b − W u − M q⁺ and −W du
   double penalty_ = 0.0;             ///< nu
   double norm_ = 0.0;                ///< of the force that was set last
-  double moved_norm_ = 0.0;          ///< when the corners moved last
-  bool followed_ = false;            ///< whether they moved after the last step
   int inverted_cells_ = 0;           ///< at the state of that force
 };
 

@@ -16,6 +16,7 @@
 
 #include "analysis.h"
 #include "conforming_notes.h"
+#include "corners.h"
 #include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
@@ -162,7 +163,7 @@ template <class T>
 EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {
   const Level<T>& level = hierarchy[0];
   kernels::Membrane<T> membrane = level.membrane();
-  membrane.law.relief = T(0);  // the energy of Eq. 8 itself
+  membrane.law.relief = membrane.law.onset = T(0);  // the energy of Eq. 8 itself
   for (auto& shift : membrane.law.shift) shift = {};
   const kernels::EnergySums sums = kernels::energy<T>(membrane, {}, T(0));
   const double area = double(level.nx) * double(level.ny);
@@ -274,6 +275,17 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
   }
 }
 
+/// Eq. 8 as an inequality has found no state without folds.
+void note_folds(const grid::Material& material, SolveReport& report) {
+  const FoldReport& folds = report.folds;
+  if (material.model != kernels::Model::arap || material.kappa < kAsInequality) return;
+  if (folds.folded_cells == 0) return;
+  const grid::Point place = folds.places_px.front();
+  report.notes.push_back("no state without folds was found: " + std::to_string(folds.folded_cells) +
+                         " cells are folded, one at (" + std::to_string(place.x) + ", " +
+                         std::to_string(place.y) + ") px");
+}
+
 }  // namespace
 
 const char* name(Solver solver) {
@@ -368,6 +380,7 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);
+  note_folds(problem.material, solution.report);
   const kernels::Model model = problem.material.model;
   solution.report.model = kernels::isotropic(model)   ? std::string(kernels::name(model))
                           : solution.pressure.empty() ? "harmonic"

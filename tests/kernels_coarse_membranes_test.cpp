@@ -117,6 +117,7 @@ std::vector<T> everything(Model model, int nx, int ny) {
     sample.membrane.law.shift[n] = shift[n].view();
   }
   sample.membrane.law.relief = T(8);
+  sample.membrane.law.onset = T(0.125);
   sample.membrane.clamp_width = T(2);
   d.fill(sample.random);
   const kernels::EnergySums sums = kernels::energy<T>(sample.membrane, d.view(), T(0.0625));
@@ -196,6 +197,47 @@ TEST(Arap, CornerPressuresReachTheFixedPointOfThePenaltyAskedFor) {
     for (int i = 0; i < 3; ++i)
       EXPECT_NEAR(8.0 * shift[2].view().at(i, j), sample.kappa.view().at(i, j) * (0.125 - kEps),
                   1e-9);
+}
+
+TEST(Arap, AGradualOnsetIsTheParabolaBelowItAndNothingAbove) {
+  Sample<double> sample(Model::arap, 3, 3, 1.0, 19);
+  const double w = 0.125;
+  auto energy_of_corners = [&](double J, double onset) {
+    Matrix2d F;
+    F << J, 0.0, 0.0, 1.0;
+    sample.deform(F, 0.0);
+    sample.membrane.law.onset = onset;
+    return kernels::energy<double>(sample.membrane, {}, 0.0).volume;
+  };
+  double kappa = 0.0;
+  for (const double of_cell : sample.kappa.values()) kappa += of_cell;
+  EXPECT_EQ(energy_of_corners(kEps + w, w), 0.0);
+  EXPECT_NEAR(energy_of_corners(kEps, w), kappa * w * w / 12.0, 1e-12);
+  EXPECT_NEAR(energy_of_corners(kEps - w, w), kappa * w * w * 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(energy_of_corners(kEps - 0.5, w),
+              energy_of_corners(kEps - 0.5, 0.0) + kappa * w * w / 6.0, 1e-11);
+}
+
+TEST(Arap, ForceAndHessianOfAGradualOnsetAreDerivatives) {
+  for (const double J : {0.05, 0.15, 0.2, 0.25, 0.35}) {
+    Sample<double> sample(Model::arap, 4, 3, 1.0, 23);
+    sample.membrane.law.onset = 0.125;
+    Matrix2d F;
+    F << 0.5, 0.25, -0.25, 2.0 * J - 0.125;
+    sample.deform(F, 0.0);
+    OwnedUnknowns<double> d = sample.unknowns(), f = sample.unknowns(), product = sample.unknowns();
+    d.fill(sample.random);
+    kernels::force<double>(sample.membrane, f.view());
+    kernels::apply_hessian<double>(sample.membrane, d.view(), product.view());
+    auto energy = [&](double step) {
+      const kernels::EnergySums sums = kernels::energy<double>(sample.membrane, d.view(), step);
+      return sums.elastic + sums.volume;
+    };
+    const double h = 1e-4, slope = -packed(d).dot(packed(f)), bend = packed(d).dot(packed(product));
+    EXPECT_NEAR((energy(h) - energy(-h)) / (2 * h), slope, 1e-5 * std::abs(bend)) << J;
+    EXPECT_NEAR((energy(h) - 2 * energy(0) + energy(-h)) / (h * h), bend, 2e-3 * std::abs(bend))
+        << J;
+  }
 }
 
 }  // namespace

@@ -82,6 +82,9 @@ struct Law {
   /// a cell; null: none (isotropic.h).
   Plane<const T> shift[4];
   T relief = T(0);
+  /// arap: the one-sided term begins gradually, from this far above eps to as far below (at least
+  /// 1e-6).
+  T onset = T(0);
 };
 
 /// The membrane linearised at a state: all that its operators read (Eq. 5, 6, 7 of Setaluri et al.
