@@ -275,15 +275,18 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
   }
 }
 
-/// Eq. 8 as an inequality has found no state without folds.
+/// What folds mean where a model rules them out (Eq. 8 as an inequality) or invites them.
 void note_folds(const grid::Material& material, SolveReport& report) {
   const FoldReport& folds = report.folds;
-  if (material.model != kernels::Model::arap || material.kappa < kAsInequality) return;
-  if (folds.folded_cells == 0) return;
+  const bool free = material.model == kernels::Model::arap && material.kappa >= kAsInequality;
+  const bool collapses = material.model == kernels::Model::stvk;
+  if (folds.folded_cells == 0 || (!free && !collapses)) return;
   const grid::Point place = folds.places_px.front();
-  report.notes.push_back("no state without folds was found: " + std::to_string(folds.folded_cells) +
-                         " cells are folded, one at (" + std::to_string(place.x) + ", " +
-                         std::to_string(place.y) + ") px");
+  report.notes.push_back(
+      std::string(free ? "no state without folds was found: "
+                       : "stvk yields where it is pressed below 1/√3 of its length: ") +
+      std::to_string(folds.folded_cells) + " cells are folded, one at (" + std::to_string(place.x) +
+      ", " + std::to_string(place.y) + ") px");
 }
 
 }  // namespace

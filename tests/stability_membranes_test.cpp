@@ -137,5 +137,17 @@ TEST(Membranes, ASceneThatMustFoldEndsWithASentenceOnIt) {
       solution.report.notes, [&](const std::string& note) { return note.starts_with(wanted); }));
 }
 
+TEST(Membranes, CollapseOfStVenantKirchhoffIsToldAsWhatItIs) {
+  const multigrid::Solution solution = solved({"", s4, Model::stvk}, 48, 0.0);
+  ASSERT_GT(solution.report.folds.folded_cells, 0);
+  EXPECT_TRUE(std::ranges::any_of(solution.report.notes, [](const std::string& note) {
+    return note.starts_with("stvk yields where it is pressed below");
+  }));
+  const multigrid::Solution corotated = solved({"", s4, Model::corotated}, 48, 0.0);
+  EXPECT_TRUE(std::ranges::none_of(corotated.report.notes, [](const std::string& note) {
+    return note.find("cells are folded") != std::string::npos;
+  }));
+}
+
 }  // namespace
 }  // namespace drumhead
