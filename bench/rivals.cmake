@@ -15,6 +15,12 @@ endif()
 add_executable(warps_bench warps_bench.cpp)
 drumhead_compile_settings(warps_bench)
 target_link_libraries(warps_bench PRIVATE drumhead_warp_rivals)
+# Pictures by them, where the driver is built too.
+if(TARGET drumhead_driver)
+  add_executable(warp_pictures warp_pictures.cpp)
+  drumhead_compile_settings(warp_pictures)
+  target_link_libraries(warp_pictures PRIVATE drumhead_warp_rivals drumhead_driver)
+endif()
 
 # A triangle mesh along the curves: CGAL (libcgal-dev) and CHOLMOD (libsuitesparse-dev).
 find_path(CGAL_INCLUDE_DIR CGAL/Delaunay_mesher_2.h)
