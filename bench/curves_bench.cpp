@@ -1,75 +1,123 @@
 // SPDX-License-Identifier: MIT
-// The two ways to meet curves on the roundabout (S2), against its exact radial solution: error,
-// folds, steps and time by lattice, as rows of JSON (results.h). One thread, default tolerance,
+// The two ways to meet curves, as rows of JSON (results.h): errors, folds, steps and time by
+// lattice; the seconds in which errors of 1, 0.3, 0.1 and 0.03 px are reached on any of the
+// lattices; and what the list of special cells adds to a product. One thread, default tolerance,
 // best of three.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <cstdio>
+#include <ctime>
+#include <exception>
+#include <limits>
+
+#include <drumhead/kernels/threads.h>
 
 #include "solution_values.h"
-#include "support/radial_reference.h"
+#include "support/newton_level.h"
 #include "support/scene_problem.h"
+#include "truth.h"
 
 namespace drumhead::bench {
 namespace {
 
+using multigrid::CurveMethod;
+
 constexpr int kRepeats = 3;
+constexpr std::array kTargets{1.0, 0.3, 0.1, 0.03};  // px RMS
+// Divisors of Truth::kFinest; those of the order table are each twice the one before.
+constexpr std::array kSizes{32, 50, 64, 80, 100, 160, 200, 320, 400, 800};
+constexpr std::array kOrderSizes{50, 100, 200, 400, 800};
 
-struct Error {
-  double rms = 0.0, max = 0.0;  // px
-};
-
-Error error_of(const multigrid::Solution& solution, const oracle::RadialReference& exact) {
-  const int n = solution.lattice.nx;
-  const double offset = scenes::kStudyOffset;
-  const std::complex<double> centre(.5 + offset, .5 + .7 * offset);
-  Error error;
-  double sum = 0.0;
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      const std::size_t k = std::size_t(j) * std::size_t(n + 1) + std::size_t(i);
-      const std::complex<double> rest(double(i) / n, double(j) / n);
-      const std::complex<double> moved(solution.u_px[k], solution.v_px[k]);
-      const double miss = kPicture * std::abs(rest + moved - centre - exact.at(rest - centre));
-      sum += miss * miss;
-      error.max = std::max(error.max, miss);
-    }
-  error.rms = std::sqrt(sum) / (n + 1);
-  return error;
-}
-
-void run(double kappa, multigrid::CurveMethod method, int n, Results& results) {
-  const multigrid::WarpProblem problem =
-      scenes::problem(scenes::roundabout(90.0, scenes::kStudyOffset), n, kappa);
-  multigrid::SolverOptions options;
-  options.threads = 1;
-  options.curve_method = method;
+multigrid::Solution fastest(const multigrid::WarpProblem& problem, CurveMethod curves) {
   multigrid::Solution best;
-  double seconds = 1e300;
+  double seconds = std::numeric_limits<double>::infinity();
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    multigrid::Solution solution = multigrid::solve(problem, options);
+    multigrid::Solution solution =
+        multigrid::solve(problem, {.curve_method = curves, .threads = 1});
     if (seconds_of(solution) >= seconds) continue;
     seconds = seconds_of(solution);
     best = std::move(solution);
   }
-  const Error error = error_of(best, {.22, .40, std::acos(0.0), kappa});
-  results.row("curves", joined({{"scene", "S2"},
-                                {"kappa", kappa},
-                                {"curves", multigrid::name(method)},
-                                {"n", n},
-                                {"rms_px", error.rms},
-                                {"max_px", error.max}},
-                               values_of(best)));
+  return best;
+}
+
+void run(const scenes::Scene& scene, double kappa, Results& results) {
+  const Truth truth(scene, kappa);
+  for (const CurveMethod curves : {CurveMethod::averaged, CurveMethod::conforming}) {
+    const Json keys = joined(keys_of(scene, kappa), {{"curves", multigrid::name(curves)}});
+    std::array<double, kTargets.size()> seconds{};
+    std::array<int, kTargets.size()> cells{};
+    for (const int n : kSizes) {
+      if (n > truth.most_cells()) continue;
+      const multigrid::Solution solution = fastest(scenes::problem(scene, n, kappa), curves);
+      const Truth::Error error = truth.error(n, solution.u_px, solution.v_px);
+      const double took = seconds_of(solution);
+      for (std::size_t t = 0; t < kTargets.size(); ++t) {
+        if (error.rms_px > kTargets[t] || (cells[t] > 0 && seconds[t] <= took)) continue;
+        seconds[t] = took;
+        cells[t] = n;
+      }
+      if (std::ranges::find(kOrderSizes, n) == kOrderSizes.end()) continue;
+      const Json errors{{"n", n}, {"rms_px", error.rms_px}, {"max_px", error.max_px}};
+      results.row("curves", joined(joined(keys, errors), values_of(solution)));
+    }
+    for (std::size_t t = 0; t < kTargets.size(); ++t) {
+      Json row = joined(keys, {{"target_px", kTargets[t]}});
+      row["seconds"] = cells[t] > 0 ? Json(seconds[t]) : Json(nullptr);
+      row["n"] = cells[t] > 0 ? Json(cells[t]) : Json(nullptr);
+      results.row("curves_reach", row);
+    }
+  }
+}
+
+/// Processor time of this thread.
+double now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+/// Least seconds of a product with and without the special cells, alternated.
+void list_share(const scenes::Scene& scene, double kappa, int n, Results& results) {
+  scenes::NewtonLevel<float> level(scenes::problem(scene, n, kappa), 0.005, 1.0,
+                                   CurveMethod::conforming);
+  kernels::Membrane<float> with = level.level().membrane(), without = with;
+  without.special = nullptr;
+  level.level().conforming->rows.linearise(with);
+  double seconds[2] = {1e9, 1e9};
+  for (int repeat = 0; repeat < 100; ++repeat)
+    for (const bool special : {false, true}) {
+      const double start = now();
+      kernels::apply_hessian<float>(special ? with : without, level.level().d.view(),
+                                    level.level().f.view());
+      seconds[special] = std::min(seconds[special], now() - start);
+    }
+  results.row("curves_share",
+              joined(keys_of(scene, kappa), {{"n", n},
+                                             {"special_cells", with.special->cells().size()},
+                                             {"share", 1.0 - seconds[0] / seconds[1]}}));
+}
+
+void run_all(Results& results) {
+  const double offset = scenes::kStudyOffset;
+  const scenes::Scene roundabout = scenes::roundabout(90.0, offset), shift = scenes::shift(offset);
+  for (const double kappa : {1.0, 10.0, 100.0, 1e4}) run(roundabout, kappa, results);
+  for (const double kappa : {1.0, 10.0, 100.0}) run(shift, kappa, results);
+  run(scenes::sponge(offset), 1.0, results);
+  const kernels::ThreadLimit one(1);
+  for (const scenes::Scene& scene : {scenes::sponge(offset), roundabout, shift})
+    list_share(scene, 10.0, 400, results);
 }
 
 }  // namespace
 }  // namespace drumhead::bench
 
-int main(int argc, char** argv) {
-  using drumhead::multigrid::CurveMethod;
+int main(int argc, char** argv) try {
   drumhead::bench::Results results(argc, argv);
-  for (const double kappa : {1.0, 10.0})
-    for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming})
-      for (const int n : {50, 100, 200, 400}) drumhead::bench::run(kappa, method, n, results);
+  drumhead::bench::run_all(results);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "curves_bench: %s\n", error.what());
+  return 1;
 }

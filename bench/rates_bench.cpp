@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <drumhead/kernels/threads.h>
@@ -61,21 +62,27 @@ Entry measure(scenes::NewtonLevel<float>& level, Solver solver) {
 void run(const scenes::Scene& scene, double kappa, double weight, int n, Results& results) {
   multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
   for (grid::CurvePair& curve : problem.curves) curve.weight = weight;
-  scenes::NewtonLevel<float> level(problem, kJump, kTheta);
-  const double unit = level.product_seconds<Clock>();
-  for (const Solver solver : kSolvers) {
+  Json keys = joined(keys_of(scene, kappa), {{"n", n}});
+  if (std::isfinite(weight)) keys["weight"] = weight;
+  auto add = [&](scenes::NewtonLevel<float>& level, Solver solver, const std::string& name) {
+    const double unit = level.product_seconds<Clock>();
     const Entry entry = measure(level, solver);
     const double digits = -std::log10(entry.report.residual);
     // What gains less than an eighth has no rate.
     const double rate =
         digits > 0.05 ? entry.seconds / unit / digits : std::numeric_limits<double>::quiet_NaN();
-    results.row("rates", joined(keys_of(scene, kappa),
-                                {{"n", n},
-                                 {"solver", multigrid::name(solver)},
-                                 {"work_units_per_digit", rate},
-                                 {"cycles", entry.report.cycles},
-                                 {"converged", entry.report.residual <= kReduction}}));
+    results.row("rates", joined(keys, {{"solver", name},
+                                       {"work_units_per_digit", rate},
+                                       {"cycles", entry.report.cycles},
+                                       {"converged", entry.report.residual <= kReduction}}));
+  };
+  if (!std::isfinite(weight)) {  // conforming curves are hard
+    scenes::NewtonLevel<float> conforming(problem, kJump, kTheta,
+                                          multigrid::CurveMethod::conforming);
+    add(conforming, Solver::gcr, "gcr, conforming curves");
   }
+  scenes::NewtonLevel<float> averaged(problem, kJump, kTheta);
+  for (const Solver solver : kSolvers) add(averaged, solver, multigrid::name(solver));
 }
 
 }  // namespace
