@@ -11,6 +11,7 @@
 //     newton, newton_all       steps on the finest lattice, on all
 //     cycles, cycles_all       iterations of the last system, of all systems
 //     bytes, bytes_per_node    of the largest system: matrices, hierarchy, vectors
+//     rms_px, max_px           error at the nodes (truth.h)
 //     difference_px            RMS from drumhead's solution to a thousandth of the tolerance
 //
 //   amg_bench [--all]          100² 200² 400², kappa/mu 100 to 200²; BoomerAMG half as far,
@@ -23,6 +24,7 @@
 #include "solution_values.h"
 #include "support/field_difference.h"
 #include "support/scene_problem.h"
+#include "truth.h"
 
 namespace drumhead::bench {
 namespace {
@@ -33,6 +35,7 @@ constexpr int kRepeats = 3;
 struct Case {
   scenes::Scene scene;
   double kappa;
+  Truth truth = Truth(scene, kappa);
 };
 
 /// Whether AMG's solution is drumhead's.
@@ -44,6 +47,9 @@ bool run_amg(const Case& c, int n, Amg amg, const multigrid::Solution& exact, Re
   const double inner_seconds = cost.setup_seconds + cost.iterate_seconds;
   const double difference = kPicture / n * oracle::difference(exact, newton.state).rms;
   const bool same = difference <= kSame * kPicture * exact.report.discretisation_rms_px;
+  std::vector<double> u, v;
+  displacements(newton, u, v);
+  const Truth::Error error = c.truth.error(n, u, v);
   results.row("amg",
               {{"scene", c.scene.name},
                {"kappa", c.kappa},
@@ -62,7 +68,9 @@ bool run_amg(const Case& c, int n, Amg amg, const multigrid::Solution& exact, Re
                {"cycles_all", cost.iterations},
                {"bytes", cost.bytes},
                {"bytes_per_node", cost.bytes / double(exact.lattice.nodes())},
-               {"difference_px", difference}});
+               {"difference_px", difference},
+               {"rms_px", error.rms_px},
+               {"max_px", error.max_px}});
   if (!same)
     std::fprintf(stderr, "amg_bench: %s kappa %g, %d²: %g px from drumhead's solution\n",
                  c.scene.name.c_str(), c.kappa, n, difference);
@@ -72,8 +80,7 @@ bool run_amg(const Case& c, int n, Amg amg, const multigrid::Solution& exact, Re
 /// Prints drumhead's row and returns its solution to a smaller tolerance.
 multigrid::Solution run_drumhead(const Case& c, int n, Results& results) {
   const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
-  multigrid::SolverOptions options;
-  options.threads = 1;
+  multigrid::SolverOptions options{.curve_method = multigrid::CurveMethod::averaged, .threads = 1};
   multigrid::Solution best;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     multigrid::Solution solution = multigrid::solve(problem, options);

@@ -39,17 +39,6 @@ double our_seconds(const Case& c, int n, int threads) {
   return least;
 }
 
-/// Displacements of all nodes, as shares of the picture.
-void displacements(const NestedNewton& newton, std::vector<double>& u, std::vector<double>& v) {
-  const int n = newton.scene.n;
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      const int node = newton.scene.node(i, j);
-      u.push_back((newton.state.x[node] - i) / n);
-      v.push_back((newton.state.y[node] - j) / n);
-    }
-}
-
 void run(const Case& c, DirectSolver& solver, int n, int threads, Results& results) {
   const double ours = our_seconds(c, n, threads);
   set_blas_threads(threads);

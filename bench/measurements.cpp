@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -95,6 +96,18 @@ std::vector<std::string> distinct(const Rows& rows,
     if (std::string name = of(row); std::ranges::find(names, name) == names.end())
       names.push_back(std::move(name));
   return names;
+}
+
+std::string figure(double value) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+  const double size = std::abs(value);
+  char buffer[40];
+  if (size >= 1e6 || (size > 0.0 && size < 1e-3))
+    std::snprintf(buffer, sizeof buffer, "%.1e", value);
+  else
+    std::snprintf(buffer, sizeof buffer, size >= 100.0 ? "%.0f" : "%.3g", value);
+  return buffer;
 }
 
 }  // namespace drumhead::bench

@@ -106,4 +106,14 @@ NestedNewton nested_newton(const scenes::Scene& scene, int n, double kappa,
   return newton;
 }
 
+void displacements(const NestedNewton& newton, std::vector<double>& u, std::vector<double>& v) {
+  const int n = newton.scene.n;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const int node = newton.scene.node(i, j);
+      u.push_back((newton.state.x[node] - i) / n);
+      v.push_back((newton.state.y[node] - j) / n);
+    }
+}
+
 }  // namespace drumhead::bench

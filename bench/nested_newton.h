@@ -6,6 +6,7 @@
 // tenth of the estimated discretisation error. drumhead stops by the same rule
 // (multigrid/newton_judge.h).
 #include <functional>
+#include <vector>
 
 #include "support/oracle_system.h"
 
@@ -47,5 +48,8 @@ struct NestedNewton {
 /// drumhead's default path: hard curves at d = 1e6 with the q-jump. n even and at least 32.
 NestedNewton nested_newton(const scenes::Scene& scene, int n, double kappa,
                            const LinearSolver& solve);
+
+/// Displacements of all nodes of the finest lattice, i fastest, as shares of the picture.
+void displacements(const NestedNewton& newton, std::vector<double>& u, std::vector<double>& v);
 
 }  // namespace drumhead::bench

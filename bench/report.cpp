@@ -13,8 +13,8 @@
 
 #include "report_page.h"
 #include "report_plots.h"
+#include "report_sheets.h"
 #include "report_summary.h"
-#include "report_tables.h"
 
 namespace drumhead::bench {
 namespace {

@@ -14,8 +14,8 @@
 #include "report_losses.h"
 #include "report_page_template.h"
 #include "report_plots.h"
+#include "report_sheets.h"
 #include "report_summary.h"
-#include "report_tables.h"
 
 namespace drumhead::bench {
 namespace {

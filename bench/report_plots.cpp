@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report_tables.h"
-
 namespace drumhead::bench {
 namespace {
 

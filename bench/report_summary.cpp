@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "report_tables.h"
-
 namespace drumhead::bench {
 namespace {
 

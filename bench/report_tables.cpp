@@ -1,35 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report_tables.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-
-#include "svg_plot.h"
 
 namespace drumhead::bench {
 namespace {
-
-struct Column {
-  std::string head;
-  std::function<std::string(const Json&)> cell;
-  bool numeric = true;
-};
-
-/// A table with a row of its own for each row measured.
-struct List {
-  std::string id, title, command, note, table;
-  std::vector<Column> columns;
-  bool detail = true;
-};
-
-/// A table across: a row for each name that `row` gives ("": none), a column for each that `column`
-/// gives.
-struct Across {
-  std::string id, title, command, note, table, corner;
-  std::function<std::string(const Json&)> row, column, cell;
-  bool detail = false, in_words = false;
-};
 
 Column number(std::string head, const char* key, double scale = 1.0) {
   return {std::move(head), [=](const Json& row) { return figure(scale * value(row, key)); }};
@@ -74,6 +49,39 @@ std::string outcome(const Json& row) {
          (value(row, "gap_max_px") < 1e-3 ? "0" : figure(value(row, "gap_max_px"))) + " px, " +
          figure(value(row, "folded")) + " folded";
 }
+
+std::vector<Column> precision_columns() {
+  return {kScene,
+          word("method", "method"),
+          kLattice,
+          number("unknowns", "unknowns"),
+          number("seconds", "seconds"),
+          number("RMS error, px", "rms_px"),
+          number("largest error, px", "max_px"),
+          number("curve gap, RMS, px", "gap_rms_px"),
+          number("largest gap, px", "gap_max_px"),
+          number("folded cells", "folded"),
+          kSteps,
+          number("work units", "work_units"),
+          kStatus};
+}
+
+std::vector<Column> solve_columns() {
+  return {kScene,
+          kLattice,
+          kStatus,
+          number("work units", "work_units"),
+          number("seconds", "seconds"),
+          number("of them cutting", "cut_seconds"),
+          kSteps,
+          number("B/node", "bytes_per_node"),
+          number("curve gap, px", "gap_rms_px"),
+          number("discretisation error, px", "discretisation_px"),
+          number("algebraic error, estimated share of it", "algebraic_share"),
+          number("true share", "true_share")};
+}
+
+}  // namespace
 
 std::vector<Across> tables_across() {
   return {
@@ -125,37 +133,6 @@ std::vector<Across> tables_across() {
   };
 }
 
-std::vector<Column> precision_columns() {
-  return {kScene,
-          word("method", "method"),
-          kLattice,
-          number("unknowns", "unknowns"),
-          number("seconds", "seconds"),
-          number("RMS error, px", "rms_px"),
-          number("largest error, px", "max_px"),
-          number("curve gap, RMS, px", "gap_rms_px"),
-          number("largest gap, px", "gap_max_px"),
-          number("folded cells", "folded"),
-          kSteps,
-          number("work units", "work_units"),
-          kStatus};
-}
-
-std::vector<Column> solve_columns() {
-  return {kScene,
-          kLattice,
-          kStatus,
-          number("work units", "work_units"),
-          number("seconds", "seconds"),
-          number("of them cutting", "cut_seconds"),
-          kSteps,
-          number("B/node", "bytes_per_node"),
-          number("curve gap, px", "gap_rms_px"),
-          number("discretisation error, px", "discretisation_px"),
-          number("algebraic error, estimated share of it", "algebraic_share"),
-          number("true share", "true_share")};
-}
-
 std::vector<List> lists() {
   return {
       {"precision", "Error against time, one thread", "speed_bench precision, speed_bench solvers",
@@ -186,6 +163,31 @@ std::vector<List> lists() {
         number("assemble, s", "assemble_seconds"), number("peak, MB", "bytes", 1e-6),
         number("B/node", "bytes_per_node"), number("drumhead, s", "our_seconds"),
         number("direct by drumhead", "ratio")}},
+      {"mesh",
+       "The same membrane on triangles along the curves, by a sparse direct solver",
+       "mesh_bench",
+       "A Delaunay mesh (CGAL) with about as many vertices as the lattice has nodes, pressures on "
+       "the "
+       "vertices' shares of either side, the same Newton's method. Seconds hold meshing, assembly "
+       "and "
+       "the solver.",
+       "mesh",
+       {kScene, word("method", "method"), kLattice, number("vertices, nodes", "nodes"),
+        number("seconds", "seconds"), number("meshing", "mesh_seconds"),
+        number("assembling", "assemble_seconds"), number("solver", "solve_seconds"),
+        number("MB", "bytes", 1e-6), number("RMS error, px", "rms_px"),
+        number("largest error, px", "max_px"), number("folded", "folded"), kStatus}},
+      {"amg",
+       "The lattice's systems by algebraic multigrid",
+       "amg_bench",
+       "MINRES with a V-cycle of PETSc's GAMG or hypre's BoomerAMG as preconditioner, in the same "
+       "nested Newton iteration; assembly, which is not tuned, is left out of the seconds.",
+       "amg",
+       {kScene, word("method", "method"), kLattice, number("seconds", "seconds"),
+        number("set-up", "setup_seconds"), number("iterations", "iterate_seconds"),
+        number("Newton steps, all lattices", "newton_all"), kSteps, number("MB", "bytes", 1e-6),
+        number("B/node", "bytes_per_node"), number("from drumhead's solution, px", "difference_px"),
+        number("RMS error, px", "rms_px"), kStatus}},
       {"curves",
        "Two ways to meet curves",
        "curves_bench",
@@ -290,99 +292,6 @@ std::vector<List> lists() {
         number("PSNR, dB", "psnr_db"), number("Mpixel/s", "megapixels_per_second"),
         number("time by ours", "by_ours")}},
   };
-}
-
-Sheet filled(const List& list, const Rows& rows) {
-  Sheet sheet{list.id, list.title, list.note, list.command, {}, {}, {}, list.detail};
-  for (const Column& column : list.columns) {
-    // A column that no row fills is not shown.
-    const auto empty = [&](const Json& row) {
-      const std::string cell = column.cell(row);
-      return cell.empty() || cell == "–" || cell == "– (–)" || cell == "–²";
-    };
-    if (std::ranges::all_of(rows, empty)) continue;
-    sheet.head.push_back(column.head);
-    sheet.numeric.push_back(column.numeric);
-    sheet.cells.resize(rows.size());
-    for (std::size_t k = 0; k < rows.size(); ++k) sheet.cells[k].push_back(column.cell(rows[k]));
-  }
-  return sheet;
-}
-
-Sheet filled(const Across& across, const Rows& rows) {
-  Sheet sheet{across.id,       across.title, across.note, across.command,
-              {across.corner}, {false},      {},          across.detail};
-  std::vector<std::string> columns = distinct(rows, across.column);
-  if (across.column(Json{{"n", 50}}) == "50²")
-    std::ranges::stable_sort(columns, {}, [](const std::string& name) { return std::stod(name); });
-  for (const std::string& name : columns) {
-    sheet.head.push_back(name);
-    sheet.numeric.push_back(!across.in_words);
-  }
-  for (const std::string& name : distinct(rows, across.row)) {
-    if (name.empty()) continue;
-    std::vector<std::string> cells{name};
-    for (const std::string& column : columns) {
-      const auto found = std::ranges::find_if(rows, [&](const Json& row) {
-        return across.row(row) == name && across.column(row) == column;
-      });
-      cells.push_back(found == rows.end() ? "" : across.cell(*found));
-    }
-    sheet.cells.push_back(std::move(cells));
-  }
-  return sheet;
-}
-
-}  // namespace
-
-std::vector<Sheet> sheets(const Measurements& measured) {
-  std::vector<Sheet> all;
-  for (const Across& across : tables_across())
-    all.push_back(filled(across, measured.table(across.table)));
-  for (const List& list : lists()) all.push_back(filled(list, measured.table(list.table)));
-  return all;
-}
-
-std::string html_of(const Sheet& sheet) {
-  std::string html = "<div class=\"wide\"><table id=\"" + sheet.id + "\"><thead><tr>";
-  const auto set = [&](std::size_t k) { return sheet.numeric[k] ? " class=\"number\">" : ">"; };
-  for (std::size_t k = 0; k < sheet.head.size(); ++k)
-    html += std::string("<th") + set(k) + escaped(sheet.head[k]) + "</th>";
-  html += "</tr></thead>\n<tbody>";
-  for (const auto& row : sheet.cells) {
-    html += "<tr>";
-    for (std::size_t k = 0; k < row.size(); ++k)
-      html += std::string("<td") + set(k) + escaped(row[k]) + "</td>";
-    html += "</tr>\n";
-  }
-  return html + "</tbody></table></div>\n";
-}
-
-std::string markdown_of(const Sheet& sheet) {
-  std::string lines = "|", rule = "|";
-  for (std::size_t k = 0; k < sheet.head.size(); ++k) {
-    lines += " " + sheet.head[k] + " |";
-    rule += sheet.numeric[k] ? "---:|" : "---|";
-  }
-  lines += "\n" + rule + "\n";
-  for (const auto& row : sheet.cells) {
-    lines += "|";
-    for (const std::string& cell : row) lines += " " + cell + " |";
-    lines += "\n";
-  }
-  return lines;
-}
-
-std::string figure(double value) {
-  if (std::isnan(value)) return "–";
-  if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  const double size = std::abs(value);
-  char buffer[40];
-  if (size >= 1e6 || (size > 0.0 && size < 1e-3))
-    std::snprintf(buffer, sizeof buffer, "%.1e", value);
-  else
-    std::snprintf(buffer, sizeof buffer, size >= 100.0 ? "%.0f" : "%.3g", value);
-  return buffer;
 }
 
 }  // namespace drumhead::bench

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The tables of the measurements: what stands in which column is said once, for the page (HTML) and
-// for bench/README.md (Markdown).
+// The tables of the measurements: what stands in which column is said once, for the page and for
+// Markdown (report_sheets.h).
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,23 +10,28 @@
 
 namespace drumhead::bench {
 
-/// A table filled in; cells of numeric columns are set right.
-struct Sheet {
-  std::string id, title, note;
-  std::string command;  ///< that measures it
-  std::vector<std::string> head;
-  std::vector<bool> numeric;
-  std::vector<std::vector<std::string>> cells;
-  bool detail = false;  ///< folded away in the page
+struct Column {
+  std::string head;
+  std::function<std::string(const Json&)> cell;
+  bool numeric = true;
 };
 
-/// Every table, those without rows too.
-std::vector<Sheet> sheets(const Measurements& measured);
+/// A table with a row of its own for each row measured.
+struct List {
+  std::string id, title, command, note, table;
+  std::vector<Column> columns;
+  bool detail = true;
+};
 
-std::string html_of(const Sheet& sheet);
-std::string markdown_of(const Sheet& sheet);
+/// A table across: a row for each name that `row` gives ("": none), a column for each that `column`
+/// gives.
+struct Across {
+  std::string id, title, command, note, table, corner;
+  std::function<std::string(const Json&)> row, column, cell;
+  bool detail = false, in_words = false;
+};
 
-/// A number as people read it: three digits, no exponent between 1e-3 and 1e6; "–" for NaN.
-std::string figure(double value);
+std::vector<Across> tables_across();
+std::vector<List> lists();
 
 }  // namespace drumhead::bench

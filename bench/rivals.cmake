@@ -1,4 +1,4 @@
-# What else solves the same scenes, where its Debian package is there (bench/run.sh installs it).
+# What else solves the same scenes, where its Debian package is there (bench/report.sh installs it).
 
 # Warps from pairs of points; OpenCV's thin-plate spline with libopencv-shape-dev.
 add_library(drumhead_warp_rivals STATIC point_warps.cpp warp_rivals.cpp)
@@ -40,5 +40,6 @@ endif()
 if(PETSC_FOUND AND MPI_CXX_FOUND)
   add_executable(amg_bench amg_bench.cpp amg_solver.cpp)
   drumhead_compile_settings(amg_bench)
-  target_link_libraries(amg_bench PRIVATE drumhead_nested_newton PkgConfig::PETSC MPI::MPI_CXX)
+  target_link_libraries(amg_bench PRIVATE drumhead_nested_newton drumhead_bench_truth
+    PkgConfig::PETSC MPI::MPI_CXX)
 endif()
