@@ -88,6 +88,11 @@ void Cycle<T>::relax_by(Solver solver, grid::MemoryMeter& meter) {
 }
 
 template <class T>
+void Cycle<T>::relax_patches(grid::MemoryMeter& meter) {
+  for (int l = top_; l + 1 < hierarchy_.size(); ++l) patches_.emplace_back(system(l), meter);
+}
+
+template <class T>
 void Cycle<T>::run(CycleKind kind, bool from_zero) {
   descend(top_, kind, from_zero);
 }
@@ -126,6 +131,11 @@ void Cycle<T>::relax_down(int l, bool from_zero) {
     smoother_->smooth(l - top_, fine);
     stages.from_zero = false;
   }
+  if (!patches_.empty()) {
+    kernels::relax<T>(fine, stages, nullptr, nullptr, hierarchy_.scratch());
+    patches_[std::size_t(l - top_)].relax(fine);
+    stages = {.from_zero = false, .sweeps = kernels::Sweeps::none};
+  }
   kernels::relax<T>(fine, stages, nullptr, &coarse.f, hierarchy_.scratch());
 }
 
@@ -135,8 +145,12 @@ void Cycle<T>::relax_up(int l) {
   const kernels::LevelSystem<T> fine = system(l);
   const kernels::Unknowns<const T> correction = system(l + 1).d;
   kernels::RelaxStages stages;
-  if (smoother_) stages.sweeps = kernels::Sweeps::none;
+  if (smoother_ || !patches_.empty()) stages.sweeps = kernels::Sweeps::none;
   kernels::relax<T>(fine, stages, &correction, nullptr, hierarchy_.scratch());
+  if (!patches_.empty()) {
+    patches_[std::size_t(l - top_)].relax(fine);
+    kernels::relax<T>(fine, {}, nullptr, nullptr, hierarchy_.scratch());
+  }
   if (smoother_) smoother_->smooth(l - top_, fine);
 }
 

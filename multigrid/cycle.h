@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "coarse_solver.h"
+#include "curve_patch.h"
 #include "hierarchy.h"
 #include "kaczmarz_smoother.h"
 
@@ -32,6 +33,9 @@ class Cycle {
   /// volume rows of coarse levels; `solver`: kaczmarz or coloured_kaczmarz.
   void relax_by(Solver solver, grid::MemoryMeter& meter);
 
+  /// Relaxes all rows along the curves at once, too, as exact rows need (curve_patch.h).
+  void relax_patches(grid::MemoryMeter& meter);
+
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
   /// the curve forces of dq afterwards (and must do so before, if not from zero).
   void run(CycleKind kind, bool from_zero);
@@ -53,6 +57,7 @@ class Cycle {
   T clamp_width_ = T(1);
   CoarseSolver<T> bottom_;
   std::optional<KaczmarzSmoother<T>> smoother_;
+  std::vector<CurvePatch<T>> patches_;  ///< of all levels but the bottom, from the top
   std::vector<T> residual_;
 };
 

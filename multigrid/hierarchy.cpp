@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <drumhead/kernels/threads.h>
 #include <drumhead/kernels/transfer.h>
@@ -71,13 +72,13 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
     for (int j = 0; j < finest.ny; ++j)
       for (int i = 0; i < finest.nx; ++i) field.view().at(i, j) = T(value(double(cells[c++])));
   };
-  auto compliance = [](double kappa) { return std::min(kMostCompliance, 1.0 / kappa); };
   fill(finest.mu, material.mu_cells, [](double mu) { return mu; });
-  if (traits_.pressure) fill(finest.compliance, material.kappa_cells, compliance);
+  if (traits_.pressure && !material.kappa_cells.empty())
+    for (Level<T>& level : levels_) level.compliance = grid::Field<T>(level.nx, level.ny, meter);
+  set_compliance(material, std::numeric_limits<double>::infinity());
   if (kernels::isotropic(traits_.model))
     fill(finest.solid.kappa, material.kappa_cells, [](double kappa) { return kappa; });
   for (Level<T>& level : levels_) {
-    level.compliance_value = T(compliance(material.kappa));
     level.solid.law.kappa.value = T(material.kappa);
     level.solid.law.eps =
         T(material.model == kernels::Model::neohookean ? kFirstFloor : material.eps);
@@ -91,13 +92,29 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
       kernels::mean_cells<T>(from.view(), to.view());
     };
     average(fine.mu, coarse.mu);
-    average(fine.compliance, coarse.compliance);
     average(fine.solid.kappa, coarse.solid.kappa);
   }
   for (Level<T>& level : levels_) {
     if (!level.mu) continue;
     set_diagonal(level, meter);
     level.cuts.divide_jump(level.mu.view());
+  }
+}
+
+template <class T>
+void Hierarchy<T>::set_compliance(const grid::Material& material, double most) {
+  auto compliance = [most](double kappa) {
+    return T(std::min(kMostCompliance, 1.0 / std::min(kappa, most)));
+  };
+  const Level<T>& finest = levels_.front();
+  std::size_t cell = 0;
+  for (int j = 0; j < finest.ny && finest.compliance; ++j)
+    for (int i = 0; i < finest.nx; ++i)
+      levels_.front().compliance.view().at(i, j) = compliance(double(material.kappa_cells[cell++]));
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    levels_[l].compliance_value = compliance(material.kappa);
+    if (l > 0 && finest.compliance)
+      kernels::mean_cells<T>(levels_[l - 1].compliance.view(), levels_[l].compliance.view());
   }
 }
 

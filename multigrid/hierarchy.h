@@ -36,8 +36,13 @@ class Hierarchy {
     return l;
   }
   const SceneTraits& traits() const { return traits_; }
-  /// Exact rows from here on: no jump in the equations (the preconditioner keeps its own).
-  void drop_jump() { traits_.jump = 0.0; }
+  /// Exact rows from here on: no jump in the equations, and this one in the preconditioner.
+  void drop_jump(double inside) {
+    traits_.jump = 0.0;
+    traits_.jump_inside = inside;
+  }
+  /// 1/kappa of all levels, no cell's kappa above `most`.
+  void set_compliance(const grid::Material& material, double most);
   kernels::RowScratch<T>& scratch() { return scratch_; }
 
   /// Hands the state of level `top` and its clamp down to all coarser levels.

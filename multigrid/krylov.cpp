@@ -27,6 +27,7 @@ class Gcr {
         pressure_(pressure),
         meter_(meter),
         cycle_(hierarchy, top, pressure, Cycle<T>::kDefinite) {
+    if (hierarchy.traits().jump == 0.0 && level_.cuts.size() > 0) cycle_.relax_patches(meter);
     if (!level_.conforming) return;
     special_ = level_.conforming->rows;  // the cycle has them with its own clamp
     special_.linearise(membrane());

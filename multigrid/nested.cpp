@@ -36,9 +36,15 @@ constexpr double kShare = 0.1;
 constexpr double kContent = 0.6, kStartContent = 0.3, kHarmonic = 0.05;
 // Exact constraints: no node moves further than this in the last step, in finest cells.
 constexpr double kExactMove = 1e-7;
-// Without the jump a linear system of larger theta costs more cycles than the steps it saves (S2,
-// kappa 100, 32²: 1.1 s with 2, over ten times as much with 16, whose 400 cycles do not suffice).
-constexpr double kMostExactTheta = 2.0;
+constexpr int kExactSteps = 400;
+// Exact rows keep a trace of the q-jump in their preconditioner: S2 kappa 10, 32² takes 412, 270,
+// 191, 163, 231 cycles with .005, 5e-4, 5e-5, 1e-5, 0; kappa 100 1033, 669, 508, 491, 1147.
+constexpr double kTraceOfJump = 5e-5;
+constexpr double kExactReduction = 1e-2;
+// Full steps after which a lowered clamp rises again.
+constexpr int kPatience = 4;
+// Exact rows: kappa grows to its value from kFirstKappa by kKappaGrows at a time.
+constexpr double kFirstKappa = 10.0, kKappaGrows = 10.0, kMostLimit = 2e4;
 // An exact row that is off by more than this many cells at the end could not be met.
 constexpr double kRowMet = 1e-3;
 constexpr std::size_t kSmallNodes = 20000;
@@ -68,19 +74,28 @@ LinearOptions linear_options(const Level<T>& level, bool start) {
   return linear;
 }
 
-/// Options of the last steps of exact constraints, from the solution with the jump. Modes of q that
-/// the jump held are nearly free without it: only accurate linear solutions lead on.
+/// The last steps of exact constraints, from the solution `with_jump`, until no node moves.
 template <class T>
-NewtonOptions exact_options(const Level<T>& level) {
-  const bool small = level.nodes() < kSmallNodes;
+NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
+                          NewtonReport with_jump, const std::function<void(int)>& progress) {
+  hierarchy.drop_jump(kTraceOfJump);
+  const bool small = hierarchy[0].nodes() < kSmallNodes;
   NewtonOptions options;
-  options.most_steps = kStartSteps;
+  options.most_steps = kExactSteps;
   options.tolerance_rms = options.tolerance_max = kExactMove;
-  options.linear = {.content = 1e-4,
-                    .reduction = 1e-4,
-                    .most_cycles = small ? 400 : 120,
-                    .directions = small ? 200 : 40};
-  return options;
+  options.linear = {.solver = solver,
+                    .content = kExactReduction,
+                    .reduction = kExactReduction,
+                    .most_cycles = 200,
+                    .directions = small ? 100 : 20};
+  options.adaptive = true;
+  ClampSchedule clamp{.patience = kPatience};
+  NewtonReport done = newton.run(options, clamp, progress);
+  if (!(newton.largest_row_gap() < kRowMet)) done.status = Status::infeasible;
+  done.steps.insert(done.steps.begin(), with_jump.steps.begin(), with_jump.steps.end());
+  done.change_rms += with_jump.change_rms;
+  done.change_max += with_jump.change_max;
+  return done;
 }
 
 }  // namespace
@@ -94,6 +109,23 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 }
 
 namespace {
+
+/// Exact rows on the start level, with a harmonic state: Newton for ever larger kappa, all but the
+/// last. At once, stiff scenes end in worse minima, or nowhere (S2 turned by 135°, kappa 1e4).
+template <class T>
+void stiffen(const NestedOptions& options, NewtonOptions newton_options, Newton<T>& newton,
+             ClampSchedule& clamp) {
+  clamp.patience = kPatience;
+  newton_options.linear.content = newton_options.linear.reduction = kExactReduction;
+  newton_options.adaptive = true;
+  const double last = std::min(options.largest_kappa, kMostLimit);
+  for (double kappa = kFirstKappa; kappa < last; kappa *= kKappaGrows) {
+    options.limit_kappa(kappa);
+    newton.run(newton_options, clamp, {});
+    clamp.theta = 1.0;
+  }
+  options.limit_kappa(options.largest_kappa);
+}
 
 /// The first state on the start level: harmonic, and for large rotations on along the load path.
 template <class T>
@@ -148,7 +180,9 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = 0.01 * double(level.spacing);
+      if (options.limit_kappa) options.limit_kappa(kFirstKappa);
       find_start(hierarchy, start, options, newton_options, newton, clamp);
+      if (options.limit_kappa) stiffen(options, newton_options, newton, clamp);
     } else {
       // What a finer level changes is small: the positive definite Hessian does, until it does not.
       clamp.theta = 1.0;
@@ -172,18 +206,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
-    if (l == 0 && options.exact && done.status != Status::not_finite) {
-      hierarchy.drop_jump();
-      ClampSchedule exact_clamp{.theta = 1.0, .most = kMostExactTheta};
-      NewtonOptions last_options = exact_options(level);
-      last_options.linear.solver = options.solver;
-      NewtonReport exact = newton.run(last_options, exact_clamp, progress);
-      if (!(newton.largest_row_gap() < kRowMet)) exact.status = Status::infeasible;
-      exact.steps.insert(exact.steps.begin(), done.steps.begin(), done.steps.end());
-      exact.change_rms += done.change_rms;
-      exact.change_max += done.change_max;
-      done = std::move(exact);
-    }
+    if (l == 0 && options.exact && done.status != Status::not_finite)
+      done = without_jump(hierarchy, options.solver, newton, std::move(done), progress);
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;

@@ -21,6 +21,10 @@ struct NestedOptions {
   /// Gives level `start` and, where they need them, coarser ones the targets at share t of a load
   /// path; 1: the targets themselves. Empty: no path is needed.
   std::function<void(int start, double t)> set_targets;
+  /// Exact rows: sets 1/kappa of all levels as if no cell had more than `most`, and the largest
+  /// kappa that there is.
+  std::function<void(double most)> limit_kappa;
+  double largest_kappa = 0.0;
   std::function<void(const Progress&)> progress;
 };
 

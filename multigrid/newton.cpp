@@ -11,6 +11,7 @@
 #include <drumhead/kernels/reduce.h>
 
 #include "corners.h"
+#include "newton_accuracy.h"
 #include "newton_judge.h"
 
 namespace drumhead::multigrid {
@@ -26,11 +27,18 @@ constexpr double kLeastFloor = 1e-3;
 // A full step is taken without asking the merit when the norm of all equations falls below this
 // share.
 constexpr double kSolves = 0.75;
+// Exact rows, so close to a solution (cells): any decrease suffices. The merit then sees little but
+// what linear solutions leave of the rows' gaps (S2 turned by 135°, kappa 1e4: stalled otherwise).
+constexpr double kTail = 1e-2;
 // The Hessian is too much clamped where a full step leaves kModelError times what the linear solver
 // left and, where that was much, more than kSlow of the residual. Less clamping than that takes
 // more cycles than it saves steps (S4 kappa 10, 800²: 131 work units with theta growing at every
 // full step, 62 so).
 constexpr double kModelError = 2.0, kSlow = 0.5;
+// Of a schedule that lets theta rise again: where the linear solver leaves more than kUnsolved,
+// theta was too large.
+constexpr double kUnsolved = 0.3;
+constexpr int kMostPatience = 32;
 // A full step this large beside the one before may well undo it; two in a row do.
 constexpr double kBackAndForth = 0.9;
 // After a shortened step linear systems are solved to this residual at least. (Also where the norm
@@ -168,7 +176,10 @@ double Newton<T>::take_step(double norm_before, double longest) {
   if (level_.solid.law.relief == T(0)) {
     update(longest, pressure);
     norm_ = force_norm(pressure);
-    if (norm_ < kSolves * norm_before) return longest;
+    const auto d = level_.d.view();
+    const bool exact = hierarchy_.traits().jump == 0.0 && !level_.conforming;
+    const bool tail = exact && std::max(kernels::largest<T>(d.x), kernels::largest<T>(d.y)) < kTail;
+    if (norm_ < (tail ? 1.0 : kSolves) * norm_before) return longest;
     update(-longest, pressure);
   }
   const double step = line_search(longest);
@@ -250,12 +261,37 @@ LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
   return linear;
 }
 
+/// theta of the next step; it does not grow while `corners` act.
+template <class T>
+void Newton<T>::adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
+                      double norm_before) const {
+  const bool accurate = step.residual <= kCareful;
+  if (clamp.patience > 0) {
+    if (step.residual > kUnsolved && clamp.theta > 1.0) {
+      clamp.patience = std::min(2 * clamp.patience, kMostPatience);
+      clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
+      clamp.full_steps = 0;
+    } else if (++clamp.full_steps > clamp.patience) {
+      clamp.most = std::min(clamp.most * kGrow, kExactTheta);
+      clamp.theta = std::min(clamp.theta * kGrow, clamp.most);
+      clamp.full_steps = 0;
+    }
+    if (shortened) clamp.full_steps = 0;
+  }
+  if (shortened && clamp.theta > 1.0)
+    clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
+  else if (step.step == 1.0 && !corners &&
+           norm_ > std::max(accurate ? 0.0 : kSlow, kModelError * step.residual) * norm_before)
+    clamp.theta = std::min(clamp.theta * kGrow, kExactTheta);
+}
+
 template <class T>
 NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
                             const std::function<void(int)>& progress) {
   NewtonReport report;
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
+  LinearAccuracy accuracy(options);
   double rms_before = 0.0, longest = 1.0;
   int in_circles = 0;
   Corners<T> corners(level_, options.onset);
@@ -267,6 +303,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
     const double norm = norm_;
+    if (options.adaptive) accuracy.set(norm, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
@@ -276,15 +313,13 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       report.status = Status::not_finite;
       return report;
     }
-    NewtonStep step;
+    NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     step.step = take_step(norm, longest);
     const bool shortened = step.step < longest;
     step.inverted_cells = inverted_cells();
-    step.theta = clamp.theta;
-    step.krylov = linear.cycles;
-    step.residual = linear.residual;
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
+    if (options.adaptive && accuracy.raised_by(step, report)) continue;
     const bool ends = judge.ends_with(step, precision());
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor()) {
@@ -305,11 +340,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       norm_ = force_norm(true);
       corners.moved_to(norm_);
     }
-    if (shortened && clamp.theta > 1.0)
-      clamp.theta = clamp.most = std::max(1.0, clamp.theta / kGrow);
-    else if (step.step == 1.0 && !corners.act() &&
-             norm_ > std::max(accurate ? 0.0 : kSlow, kModelError * linear.residual) * norm)
-      clamp.theta = std::min(clamp.theta * kGrow, kExactTheta);
+    adapt(clamp, step, shortened, corners.act(), norm);
   }
   report.status = Status::limit;
   return report;

@@ -35,6 +35,9 @@ struct NewtonOptions {
   std::vector<double> expected_rates;
   double onset = 0.0;  ///< arap: of the one-sided term at the end (corners.h)
   LinearOptions linear;
+  /// Exact rows: linear.reduction is the residual wanted at first, less where Newton's method
+  /// converges fast or where steps are shortened.
+  bool adaptive = false;
 };
 
 struct NewtonReport {
@@ -49,6 +52,10 @@ struct NewtonReport {
 struct ClampSchedule {
   double theta = 1.0;
   double most = 1e6;  ///< lowered where the linear solver stagnated; above 1e6 the Hessian is exact
+  /// Full steps after which a lowered bound rises again, twice as many each time that the linear
+  /// solver then fails; 0: it never rises.
+  int patience = 0;
+  int full_steps = 0;  ///< since the bound was lowered or rose
 };
 
 template <class T>
@@ -79,6 +86,8 @@ class Newton {
   int inverted_cells() const;
   void update(double step, bool pressure);
   bool lower_floor();
+  void adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
+             double norm_before) const;
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
 

@@ -41,7 +41,7 @@ constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
 constexpr double kSinglePrecision = 1e-3;
 // A hard curve that misses its target by more than this many cells deserves a word.
 constexpr double kNotableGap = 1.0, kNotableConformingGap = 0.5;
-// The q-jump of the default path and of the preconditioner.
+// The q-jump of the default path and of its preconditioner.
 constexpr double kJump = 0.005;
 
 void check(const WarpProblem& problem, const SolverOptions& options) {
@@ -95,10 +95,13 @@ double largest_mu(const grid::Material& material) {
   return double(*std::ranges::max_element(material.mu_cells));
 }
 
+double largest_kappa(const grid::Material& material) {
+  if (material.kappa_cells.empty()) return material.kappa;
+  return double(*std::ranges::max_element(material.kappa_cells));
+}
+
 bool has_pressure(const grid::Material& material) {
-  if (material.model != kernels::Model::crpm) return false;
-  if (material.kappa_cells.empty()) return material.kappa > 0.0;
-  return std::ranges::any_of(material.kappa_cells, [](float kappa) { return kappa > 0.0f; });
+  return material.model == kernels::Model::crpm && largest_kappa(material) > 0.0;
 }
 
 /// Whether a curve ends within the lattice: solutions are singular there.
@@ -222,10 +225,15 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
                        .discretisation_share = kErrorOfChange,
                        .tips = false,
                        .set_targets = {},
+                       .limit_kappa = {},
                        .progress = options.progress};
   if (conforming) {
     nested.tips = has_tips(problem);
     nested.discretisation_share = nested.tips ? kErrorWithTips : kErrorOfSecondOrder;
+  }
+  if (options.exact && traits.pressure) {
+    nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
+    nested.largest_kappa = largest_kappa(material);
   }
   if (largest_turn(problem.curves) > kLoadPathTurn)
     nested.set_targets = [&](int start, double t) {
