@@ -31,9 +31,9 @@ for scene in "$@"; do
   done
   # Figure 6 has a thin-plate spline beside it.
   [ "$scene" != roundabout ] || {
-    cmake --build --preset release --target spline_pictures
-    spline=build/demo/$scene-spline
-    build/release/bench/spline_pictures "$examples/$scene.toml" 16 "$spline.png" "$spline-checkerboard.png"
+    cmake --build --preset release --target warp_pictures
+    build/release/bench/warp_pictures "$examples/$scene.toml" build/demo/rivals 16 >build/demo/rivals.json
+    spline=build/demo/rivals/$scene-thin-plate-spline
     small "$spline.png" "$examples/pictures/$scene-spline.png"
     small "$spline-checkerboard.png" "$examples/pictures/$scene-spline-checkerboard.png"
   }
