@@ -189,7 +189,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       if (level.conforming) coarse.emplace(hierarchy[l + 1], meter);
       hierarchy.prolong_state(l);
     }
-    if (l == 0 && options.tolerance_cells > 0.0) {
+    if (l == 0 && options.tolerance_cells > 0.0 && !options.exact) {
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = options.tolerance_cells;

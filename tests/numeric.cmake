@@ -35,7 +35,7 @@ foreach(name conforming_report exact default masks nested restart)
     SOURCES stability_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
-foreach(name conforming_cases degenerate stiff)
+foreach(name cases conforming_cases degenerate stiff)
   drumhead_test(NAME stability_${name}_test
     SOURCES stability_${name}_test.cpp support/hard_cases.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)

@@ -37,6 +37,8 @@ TEST_P(ExactRows, ReachTheReferenceEnergyToSixDigits) {
 const auto case_name = [](const auto& info) { return info.param.name; };
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactRows, testing::ValuesIn(scenes::reference_cases()),
                          case_name);
+INSTANTIATE_TEST_SUITE_P(Further, ExactRows, testing::ValuesIn(scenes::further_reference_cases()),
+                         case_name);
 
 class ExactField : public testing::TestWithParam<scenes::ReferenceCase> {};
 
