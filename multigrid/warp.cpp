@@ -41,8 +41,7 @@ constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
 constexpr double kSinglePrecision = 1e-3;
 // A hard curve that misses its target by more than this many cells deserves a word.
 constexpr double kNotableGap = 1.0, kNotableConformingGap = 0.5;
-// The q-jump of the default path and of its preconditioner.
-constexpr double kJump = 0.005;
+constexpr double kJump = 0.005;  // on q: of the default path and of its preconditioner
 
 void check(const WarpProblem& problem, const SolverOptions& options) {
   const grid::Lattice& lattice = problem.lattice;
@@ -226,15 +225,14 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
                        .tips = false,
                        .set_targets = {},
                        .limit_kappa = {},
+                       .largest_kappa = largest_kappa(material),
                        .progress = options.progress};
   if (conforming) {
     nested.tips = has_tips(problem);
     nested.discretisation_share = nested.tips ? kErrorWithTips : kErrorOfSecondOrder;
   }
-  if (options.exact && traits.pressure) {
+  if (options.exact && traits.pressure)
     nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
-    nested.largest_kappa = largest_kappa(material);
-  }
   if (largest_turn(problem.curves) > kLoadPathTurn)
     nested.set_targets = [&](int start, double t) {
       const std::vector<grid::CurvePair> curves =
