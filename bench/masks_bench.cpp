@@ -61,15 +61,18 @@ void run(const Masked& c, Results& results) {
       level.solve({.content = kReduction, .reduction = kReduction, .most_cycles = kMostCycles});
   const double seconds = (Clock::now() - start).count();
   const double digits = -std::log10(linear.residual);
-  results.row("masks", joined({{"scene", c.scene.name},
-                               {"n", c.n},
-                               {"kappa_in", c.kappa_in},
-                               {"kappa_out", c.kappa_out},
-                               {"mu_in", c.mu_in},
-                               {"mu_out", c.mu_out},
-                               {"work_units_per_digit", seconds / unit / digits},
-                               {"linear_cycles", linear.cycles}},
-                              values_of(multigrid::solve(problem, {.threads = 1}))));
+  results.row(
+      "masks",
+      joined({{"scene", c.scene.name},
+              {"n", c.n},
+              {"kappa_in", c.kappa_in},
+              {"kappa_out", c.kappa_out},
+              {"mu_in", c.mu_in},
+              {"mu_out", c.mu_out},
+              {"work_units_per_digit", seconds / unit / digits},
+              {"linear_cycles", linear.cycles}},
+             values_of(multigrid::solve(
+                 problem, {.curve_method = multigrid::CurveMethod::averaged, .threads = 1}))));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace {
 multigrid::Solution solved(const scenes::Scene& scene, int n, kernels::Model model, double kappa) {
   multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
   problem.material.model = model;
-  return multigrid::solve(problem, {.threads = 1});
+  return multigrid::solve(problem,
+                          {.curve_method = multigrid::CurveMethod::averaged, .threads = 1});
 }
 
 void all_models(Results& results) {

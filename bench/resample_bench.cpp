@@ -52,7 +52,9 @@ WarpedLattice affine(double degrees, double scale) {
 WarpedLattice roundabout() {
   constexpr int n = 256;
   const auto scene = scenes::roundabout(90.0, scenes::kStudyOffset);
-  multigrid::Solution s = multigrid::solve(scenes::problem(scene, n, 10.0), {.threads = 1});
+  multigrid::Solution s =
+      multigrid::solve(scenes::problem(scene, n, 10.0),
+                       {.curve_method = multigrid::CurveMethod::averaged, .threads = 1});
   for (auto* field : {&s.u_px, &s.v_px}) {
     for (double& x : *field) x *= kSize;
   }

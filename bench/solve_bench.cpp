@@ -48,7 +48,8 @@ double true_error(const multigrid::WarpProblem& problem, const multigrid::Soluti
 
 void run(const Case& c, int n, int threads, Results& results) {
   const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
-  const multigrid::SolverOptions options{.threads = threads};
+  const multigrid::SolverOptions options{.curve_method = multigrid::CurveMethod::averaged,
+                                         .threads = threads};
   const multigrid::Solution solution = multigrid::solve(problem, options);
   Json row = joined(joined(keys_of(c.scene, c.kappa), {{"n", n}, {"threads", threads}}),
                     values_of(solution));

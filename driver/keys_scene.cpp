@@ -173,7 +173,7 @@ const std::array kKeys = {
         .value = "EXR",
         .bound = "the path of an .exr file",
         .help = "the file that --lattice wrote in an earlier run on the same lattice, to go on "
-                "from where a curve was dragged a little or let go; averaged curves only",
+                "from where a curve was dragged a little or let go",
         .set = [](const Value& v, Options& o) { return set_path(v, ".exr", o.start); },
         .path = true},
     Key{.name = "threads",

@@ -66,6 +66,7 @@ void write_lattice(const Solution& s, const std::filesystem::path& file) {
   const int columns = s.lattice.nx + 1;
   FloatExr exr = lattice_exr(s, columns, s.lattice.ny + 1, {"u", "v"});
   exr.header.emplace_back(kLatticeError, std::to_string(s.report.discretisation_rms_px));
+  exr.header.emplace_back(kLatticeCurves, multigrid::name(s.report.curve_method));
   write_float_exr(exr, file, [&](int first, int rows, float* pixels) {
     std::size_t k = std::size_t(first) * std::size_t(columns);
     const std::size_t end = k + std::size_t(rows) * std::size_t(columns);

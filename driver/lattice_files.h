@@ -13,6 +13,9 @@ namespace drumhead::driver {
 /// The header attribute of write_lattice that holds the estimated discretisation error, RMS in px.
 inline constexpr const char* kLatticeError = "drumhead:discretisation_rms_px";
 
+/// The one that names the way its curves were met.
+inline constexpr const char* kLatticeCurves = "drumhead:curve_method";
+
 /// Float32 EXR of (nx+1) × (ny+1) pixels, one a node: channels u, v, displacement in picture
 /// pixels. Throws std::runtime_error naming `file`, as the others.
 void write_lattice(const multigrid::Solution& solution, const std::filesystem::path& file);

@@ -33,6 +33,9 @@ multigrid::Solution read_start(const std::filesystem::path& file, const grid::La
   }
   start.report.discretisation_rms_px =
       std::atof(std::string(image.spec.get_string_attribute(kLatticeError)).c_str());
+  const auto method =
+      multigrid::curve_method_named(std::string(image.spec.get_string_attribute(kLatticeCurves)));
+  start.report.curve_method = method.value_or(multigrid::CurveMethod::averaged);
   return start;
 }
 

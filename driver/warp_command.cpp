@@ -91,8 +91,6 @@ multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
 std::optional<multigrid::Solution> start_of(const Options& options, const grid::Lattice& lattice) {
   if (options.start.empty()) return {};
   if (options.exact) throw std::invalid_argument("start: not with exact curves");
-  if (options.curve_method == multigrid::CurveMethod::conforming)
-    throw std::invalid_argument("start: not with conforming curves, give curve_method averaged");
   multigrid::Solution start = read_start(options.start, lattice);
   if (!(start.report.discretisation_rms_px > 0.0) && options.tolerance_px == 0.0)
     throw std::invalid_argument(options.start.string() +
@@ -173,7 +171,7 @@ multigrid::Solution solve(const Options& options, const multigrid::WarpProblem& 
   multigrid::Solution solution = multigrid::solve(problem, solver);
   if (start && solution.report.levels.size() > 1)
     progress.warn(options.start.string() +
-                  ": too far away; the scene was solved from the beginning");
+                  ": no start for this scene, which was solved from the beginning");
   return solution;
 }
 

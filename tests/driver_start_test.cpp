@@ -86,12 +86,10 @@ TEST_F(DriverStart, RefusesAValueThatIsNotFinite) {
   EXPECT_NE(result.err.find("holed.exr: a value is not finite"), std::string::npos) << result.err;
 }
 
-TEST_F(DriverStart, GoesWithAveragedCurvesOnly) {
+TEST_F(DriverStart, GoesNotWithExactCurves) {
   const RunResult exact = run(10.0, {"--start", "ten.exr", "--exact"});
   EXPECT_EQ(exact.exit_code, 2);
   EXPECT_NE(exact.err.find("start: not with exact curves"), std::string::npos) << exact.err;
-  const RunResult conforming = run(10.0, {"--start", "ten.exr", "--curve-method", "conforming"});
-  EXPECT_EQ(conforming.exit_code, 2);
 }
 
 }  // namespace

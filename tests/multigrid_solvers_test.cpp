@@ -35,7 +35,8 @@ class Solvers : public testing::TestWithParam<Solver> {};
 
 TEST_P(Solvers, SolveTheSponge) {
   const multigrid::WarpProblem problem = sponge(64, 1.0);
-  const multigrid::Solution best = multigrid::solve(problem, {.tolerance_px = 1e-6});
+  const multigrid::Solution best = multigrid::solve(
+      problem, {.curve_method = multigrid::CurveMethod::averaged, .tolerance_px = 1e-6});
   const multigrid::Solution found = multigrid::solve(problem, {.solver = GetParam()});
   EXPECT_EQ(found.report.solver, GetParam());
   EXPECT_EQ(found.report.status, Status::converged) << name(found.report.status);
@@ -46,7 +47,8 @@ TEST_P(Solvers, SolveTheSponge) {
 TEST_P(Solvers, ClaimConvergenceOnlyWhereItIs) {
   const multigrid::WarpProblem problem =
       scenes::problem(scenes::roundabout(90.0, scenes::kStudyOffset), 32, 1e4);
-  const multigrid::Solution best = multigrid::solve(problem, {.tolerance_px = 1e-5});
+  const multigrid::Solution best = multigrid::solve(
+      problem, {.curve_method = multigrid::CurveMethod::averaged, .tolerance_px = 1e-5});
   const multigrid::Solution found = multigrid::solve(problem, {.solver = GetParam()});
   if (found.report.status == Status::converged) {
     EXPECT_LT(rms_difference(found, best), 0.05 / 32);  // the tolerance is .01 cells

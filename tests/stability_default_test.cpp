@@ -22,6 +22,7 @@ class DefaultPath : public testing::TestWithParam<scenes::ReferenceCase> {};
 
 multigrid::Solution solve_to(const scenes::ReferenceCase& c, double tolerance_cells) {
   multigrid::SolverOptions options;
+  options.curve_method = multigrid::CurveMethod::averaged;
   options.tolerance_px = tolerance_cells / kCells;
   return multigrid::solve(scenes::problem(c.scene, kCells, c.kappa), options);
 }

@@ -15,6 +15,7 @@ namespace {
 
 multigrid::Solution solve_exactly(const scenes::ReferenceCase& c, int n) {
   multigrid::SolverOptions options;
+  options.curve_method = multigrid::CurveMethod::averaged;
   options.exact = true;
   options.tolerance_px = 1e-8 / n;  // 1e-8 of a cell, RMS
   return multigrid::solve(scenes::problem(c.scene, n, c.kappa), options);

@@ -27,7 +27,9 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 multigrid::Solution solved(const Case& c, int n, double tolerance_cells, bool exact = false) {
   multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
   problem.material.model = c.model;
-  return multigrid::solve(problem, {.exact = exact, .tolerance_px = tolerance_cells / n});
+  return multigrid::solve(problem, {.curve_method = multigrid::CurveMethod::averaged,
+                                    .exact = exact,
+                                    .tolerance_px = tolerance_cells / n});
 }
 
 const scenes::Scene s1 = scenes::sponge(scenes::kStudyOffset),

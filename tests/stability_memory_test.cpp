@@ -26,7 +26,8 @@ multigrid::Solution solve(double kappa, bool mu_cells, bool kappa_cells) {
   bar.source = {grid::straight({100.3, 80.1}, {100.3, 170.1})};
   bar.target = {grid::straight({108.3, 80.1}, {108.3, 170.1})};
   problem.curves = {bar};
-  multigrid::Solution solution = multigrid::solve(problem);
+  multigrid::Solution solution =
+      multigrid::solve(problem, {.curve_method = multigrid::CurveMethod::averaged});
   EXPECT_EQ(solution.report.status, multigrid::Status::converged);
   return solution;
 }

@@ -28,6 +28,7 @@ std::vector<scenes::ReferenceCase> large_cases() {
 
 multigrid::Solution solve_to(const scenes::ReferenceCase& c, int n, double tolerance_cells) {
   multigrid::SolverOptions options;
+  options.curve_method = multigrid::CurveMethod::averaged;
   options.tolerance_px = tolerance_cells / n;
   return multigrid::solve(scenes::problem(c.scene, n, c.kappa), options);
 }
