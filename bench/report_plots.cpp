@@ -135,9 +135,9 @@ void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
                rows, [](const Json& row) { return text(row, "method"); }, number_of("seconds"),
                number_of(error.key), [](const Json& row) { return figure(value(row, "n")); })},
           id == "precision_S2"};
-      // Only drumhead's recommended ways carry their lattices: the others' are the same.
+      // Only the two ways to meet curves carry their lattices: the others' are the same.
       for (PlotSeries& line : plot.plot.series)
-        if (std::ranges::count(line.name, ',') > 1 || !line.name.starts_with("drumhead"))
+        if (line.name != "drumhead, averaged" && line.name != "drumhead, conforming")
           for (PlotPoint& point : line.points) point.label.clear();
       all.push_back(std::move(plot));
     }

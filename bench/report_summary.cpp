@@ -22,7 +22,7 @@ std::string by(double theirs, double ours) { return figure(theirs / ours) + " ti
 void add_paper(const Rows& rows, std::vector<std::string>& all) {
   const Json* ours = find(rows, "drumhead, averaged", 800, 1);
   const Json* paper = find(rows, "paper, multigrid", 800, 1);
-  const Json* rival = find(rows, "paper, PARDISO on a triangle mesh", 800, 1);
+  const Json* rival = find(rows, "paper, PARDISO on a mesh", 800, 1);
   if (!ours || !paper || !rival) return;
   all.push_back("The paper's stretchy sponge at 800² takes " + figure(value(*ours, "seconds")) +
                 " s and " + figure(1e-6 * value(*ours, "bytes")) +
@@ -30,7 +30,7 @@ void add_paper(const Rows& rows, std::vector<std::string>& all) {
                 " s and " + figure(1e-6 * value(*paper, "bytes")) + " MB for its own method, " +
                 figure(value(*rival, "seconds")) + " s and " +
                 figure(1e-6 * value(*rival, "bytes")) +
-                " MB for PARDISO on a triangle mesh, on its machine of 2014: part of the ratio is "
+                " MB for PARDISO on a mesh, on its machine of 2014: part of the ratio is "
                 "the machine.");
 }
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Speed against error of whole solves, as rows of JSON (results.h).
-//   speed_bench table1 [--large]      the paper's Table 1: the sponge, on one and on all
-//   processors;
-//                                     --large: also 1600² and 3200²
-//   speed_bench precision [--large]   error against time over lattices, by both ways to meet
-//   curves;
-//                                     --large: the roundabout also at 1600²
+//   speed_bench table1 [--large]      the paper's Table 1: the sponge, on one and all processors
+//   speed_bench precision [--large]   error against time over lattices, curves met both ways
 //   speed_bench tolerances            error against time over tolerances, on one lattice
-//   speed_bench solvers               error against time of the paper's linear solvers
+//   speed_bench solvers               error against time by the paper's linear solvers
+// --large: also 1600² and 3200²; the roundabout's error also at 1600².
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -114,7 +111,7 @@ void solvers(Results& results) {
       for (const int n : {50, 100, 200, 400}) {
         const multigrid::Solution solution =
             fastest(c, n, {.solver = solver, .curve_method = CurveMethod::averaged, .threads = 1});
-        const std::string method = std::string("drumhead, averaged, ") + multigrid::name(solver);
+        const std::string method = std::string("drumhead, ") + multigrid::name(solver);
         results.row("work_precision",
                     joined(row_of(c, method, n, solution), errors_of(truth, n, solution)));
         if (seconds_of(solution) > kMostSeconds) break;

@@ -9,8 +9,8 @@
 namespace drumhead::bench {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 400;
-constexpr double kLeft = 66, kRight = 250, kTop = 36, kBottom = 50;
+constexpr double kWidth = 790, kHeight = 400;
+constexpr double kLeft = 66, kRight = 280, kTop = 36, kBottom = 50;
 constexpr double kMark = 4.0, kLine = 18.0;
 
 // Okabe and Ito's colours, which people with any colour sense tell apart, darker on white and
