@@ -1,10 +1,8 @@
-#!/ bin / sh
-#Measures drumhead and its rivals and makes one page of it, from a clean clone of a Debian 12, \
-    as root
-# or with sudo : installs what is missing, builds, runs the programs of bench / one after another, \
-    writes
-#build / report / index.html the page : plots, tables, pictures, in one file
-#bench / tables.md all tables
+#!/bin/sh
+# Measures drumhead and its rivals and makes one page of it, from a clean clone of a Debian 12, as root
+# or with sudo: installs what is missing, builds, runs the programs of bench/ one after another, writes
+#     build/report/index.html     the page: plots, tables, pictures, in one file
+#     bench/tables.md             all tables
 #     bench/pictures/*.svg        the README's plots; its table is put into README.md itself
 #   sh bench/report.sh              some 20 minutes on two quiet cores
 #   sh bench/report.sh --large      also solves at 1600² and 3200²
@@ -71,33 +69,41 @@ stage() {
   fi
   shift 2
   echo "$(date +%T) ${program##*/} $*"
-if
-  "$program"
-  "$@" > "$file.part" 2 > "$file.log";
-then mv
-    "$file.part"
-    "$file" else failed = "$failed $file.log" echo "failed: $(tail -n 1 " $file.log ")"
-#Rows until then count, if the program could end its document, and are measured again next time.
-                          if["$(tail -n 1 " $file.part ")" = "]}"];
-then mv
-    "$file.part"
-    "$file" touch -
-    d 1970 - 01 - 02 "$file" else rm -
-    f
-    "$file"
-    "$file.part" fi fi
+  if "$program" "$@" >"$file.part" 2>"$file.log"; then
+    mv "$file.part" "$file"
+  else
+    failed="$failed $file.log"
+    echo "failed: $(tail -n 1 "$file.log")"
+    # Rows until then count, if the program could end its document, and are measured again next time.
+    if [ "$(tail -n 1 "$file.part")" = "]}" ]; then
+      mv "$file.part" "$file"
+      touch -d 1970-01-02 "$file"
+    else
+      rm -f "$file" "$file.part"
+    fi
+  fi
 }
-if
-  ["$measure"];
-then cores = $(nproc) stage table1 speed_bench table1 $large stage precision speed_bench precision
-    $large stage tolerances speed_bench tolerances stage solvers speed_bench solvers stage curves
-        curves_bench stage solve solve_bench $large stage mesh mesh_bench stage amg amg_bench stage
-            warps warps_bench stage stability stability_bench stage membranes membranes_bench stage
-                masks masks_bench stage rates rates_bench 128 stage rates_64
-                    rates_bench 64 stage rates_256 rates_bench 256 stage direct direct_bench stage
-                        direct_sponge direct_bench-- sponge 150 300 stage direct_threads
-                            direct_bench-- sponge-- threads
-    "$cores" 50 100 150 200 300 if["$direct"]; then
+if [ "$measure" ]; then
+  cores=$(nproc)
+  stage table1 speed_bench table1 $large
+  stage precision speed_bench precision $large
+  stage tolerances speed_bench tolerances
+  stage solvers speed_bench solvers
+  stage curves curves_bench
+  stage solve solve_bench $large
+  stage mesh mesh_bench
+  stage amg amg_bench ${large:+--all}
+  stage warps warps_bench
+  stage stability stability_bench
+  stage membranes membranes_bench
+  stage masks masks_bench
+  stage rates rates_bench 128
+  stage rates_64 rates_bench 64
+  stage rates_256 rates_bench 256
+  stage direct direct_bench
+  stage direct_sponge direct_bench --sponge 150 300
+  stage direct_threads direct_bench --sponge --threads "$cores" 50 100 150 200 300
+  if [ "$direct" ]; then
     stage "direct_${direct##* }" direct_bench --sponge $direct
     stage "direct_${direct##* }_threads" direct_bench --sponge --threads "$cores" $direct
   fi
@@ -106,7 +112,7 @@ then cores = $(nproc) stage table1 speed_bench table1 $large stage precision spe
 fi
 
 report=$folder/bench/report
-#Without measurements there is the paper's table alone.
+# Without measurements there is the paper's table alone.
 set -- $(ls $results/*.json 2>/dev/null) bench/paper.json
 $report -o build/report/index.html --plots bench/pictures --pictures driver/examples/pictures "$@"
 {
