@@ -24,6 +24,7 @@ Vector2d left_turn(const Vector2d& v) { return {-v.y(), v.x()}; }
 class MeshLevel {
  public:
   MeshLevel(const CurveMesh& mesh, double kappa) : mesh_(mesh), kappa_(kappa) {
+    solver_.cholmod().print = 0;  // standard output is for the rows
     const std::size_t vertices = mesh.rest.size();
     unknown_.assign(vertices, -1);
     for (std::size_t v = 0; v < vertices; ++v)
