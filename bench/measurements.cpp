@@ -32,18 +32,28 @@ void add_document(const Json& document, Measurements& all) {
   all.runs.push_back(std::move(run));
 }
 
-/// Programs of rivals have tables of their own; the rivals' rows stand in the common ones, too.
+/// Programs of rivals have tables of their own; the rivals' rows stand in the common ones, too, and
+/// drumhead's beside them where no other program has measured the scene.
 void add_rivals(Measurements& all) {
+  const Rows measured = all.table("work_precision");
+  const auto known = [&](const Json& row) {
+    return std::ranges::any_of(measured, [&](const Json& other) {
+      return is_ours(other) && text(other, "scene") == text(row, "scene") &&
+             value(other, "kappa") == value(row, "kappa");
+    });
+  };
   Rows shared;
   for (const Json& row : all.rows) {
     const std::string table = text(row, "table");
-    if (is_ours(row) || (table != "direct" && table != "mesh" && table != "amg")) continue;
+    if (table != "direct" && table != "mesh" && table != "amg") continue;
     Json copy = row;
     if (!copy.contains("threads")) copy["threads"] = 1;
     copy["table"] = "table1";
-    if (text(row, "scene") == "S1" && value(row, "kappa") == 1.0) shared.push_back(copy);
+    if (!is_ours(row) && text(row, "scene") == "S1" && value(row, "kappa") == 1.0)
+      shared.push_back(copy);
     copy["table"] = "work_precision";
-    if (row.contains("rms_px") && copy["threads"] == 1) shared.push_back(copy);
+    if ((!is_ours(row) || !known(row)) && row.contains("rms_px") && copy["threads"] == 1)
+      shared.push_back(copy);
   }
   std::ranges::move(shared, std::back_inserter(all.rows));
 }

@@ -52,6 +52,7 @@ targets=
 for program in $programs; do
   ! grep -q "^$program:" build/report/targets.log || targets="$targets $program"
 done
+[ "$measure" ] || targets=report
 cmake --build $folder --target $targets
 
 # libgomp's threads otherwise spin between loops, on whatever else the machine does; direct solvers say

@@ -47,8 +47,9 @@ Losses table1(const Rows& rows) {
       if (theirs < ours && std::isfinite(ours))
         found.words.push_back(text(peer, "method") + " " + what + " " + figure(theirs) + " " +
                               unit + " at " + figure(value(peer, "n")) + "², " +
-                              figure(value(peer, "threads")) + " threads; drumhead " +
-                              figure(ours) + " " + unit + ".");
+                              figure(value(peer, "threads")) +
+                              (value(peer, "threads") == 1 ? " thread" : " threads") +
+                              "; drumhead " + figure(ours) + " " + unit + ".");
     }
   return found;
 }
@@ -61,18 +62,16 @@ Losses precision(const Rows& rows, const char* key, const std::string& words) {
     const double seconds = best_of_ours(rows, "seconds", [&](const Json& row) {
       return same(row, peer, {"scene", "kappa"}) && value(row, key) <= value(peer, key);
     });
-    if (!(value(peer, "seconds") < seconds)) continue;
+    const double least = best_of_ours(rows, key, [&](const Json& row) {
+      return same(row, peer, {"scene", "kappa"});
+    });
+    if (!(value(peer, "seconds") < seconds) || !std::isfinite(least)) continue;
     std::string line = scene_of(peer) + ": " + text(peer, "method") + " at " +
                        figure(value(peer, "n")) + "² reaches " + figure(value(peer, key)) +
                        " px in " + figure(value(peer, "seconds")) + " s; drumhead ";
-    if (std::isfinite(seconds)) {
-      line += "needs " + figure(seconds) + " s.";
-    } else {
-      const double least = best_of_ours(rows, key, [&](const Json& row) {
-        return same(row, peer, {"scene", "kappa"});
-      });
-      line += "does not on the lattices tried (its best: " + figure(least) + " px).";
-    }
+    line += std::isfinite(seconds)
+                ? "needs " + figure(seconds) + " s."
+                : "does not on the lattices tried (its best: " + figure(least) + " px).";
     found.words.push_back(line);
   }
   return found;

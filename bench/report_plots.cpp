@@ -20,7 +20,7 @@ constexpr Peer kPeers[] = {
     {"paper, PARDISO", 7},   {"paper", 6},        {"triangle mesh", 4}, {"conforming", 0},
     {"minres-multigrid", 2}, {"minres", 3},       {"coloured", 7},      {"kaczmarz", 6},
     {"averaged", 1},         {"gcr", 1},          {"MUMPS", 2},         {"UMFPACK", 3},
-    {"CHOLMOD", 3},          {"PARDISO", 7},      {"AMG", 5},           {"hypre", 5},
+    {"CHOLMOD", 3},          {"PARDISO", 7},      {"Boomer", 7},        {"AMG", 5},
     {"thin-plate", 4},       {"moving least", 5}, {"Shepard", 7}};
 
 int look_of(const std::string& name) {
@@ -110,10 +110,12 @@ void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
 void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
   const Rows every = where(measured.table("work_precision"), solved);
   const struct {
-    const char *scene, *words;
-  } scenes[] = {{"S2", "roundabout 90°, kappa/mu 10"},
-                {"S4", "disc moved, kappa/mu 10"},
-                {"S1", "sponge, kappa/mu 1"}};
+    const char* scene;
+    double kappa;
+    const char* words;
+  } scenes[] = {{"S2", 10.0, "roundabout 90°, kappa/mu 10"},
+                {"S4", 10.0, "disc moved, kappa/mu 10"},
+                {"S1", 1.0, "sponge, kappa/mu 1"}};
   const struct {
     const char *id, *key, *words;
   } errors[] = {{"precision", "rms_px", "RMS error"},
@@ -121,8 +123,9 @@ void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
                 {"precision_gap", "gap_rms_px", "curve gap, RMS"}};
   for (const auto& scene : scenes)
     for (const auto& error : errors) {
-      const Rows rows = where(
-          every, [&](const Json& row) { return text(row, "scene").starts_with(scene.scene); });
+      const Rows rows = where(every, [&](const Json& row) {
+        return text(row, "scene") == scene.scene && value(row, "kappa") == scene.kappa;
+      });
       const std::string id = std::string(error.id) + "_" + scene.scene;
       ReportPlot plot{
           id,

@@ -48,7 +48,7 @@ void add_rivals(const Rows& rows, std::vector<std::string>& all) {
   if (!best) return;
   const Json* ours = find(rows, "drumhead, averaged", int(value(*best, "n")), 1);
   if (!ours) return;
-  all.push_back("On the same machine, to the same stopping rule, the fastest direct solver at " +
+  all.push_back("On the same machine, to the same stopping rule, the fastest other solver at " +
                 figure(value(*best, "n")) + "² (" + text(*best, "method") + ") takes " +
                 figure(value(*best, "seconds")) + " s, drumhead " +
                 figure(value(*ours, "seconds")) +
@@ -85,7 +85,7 @@ std::vector<std::string> summary(const Measurements& measured) {
     const auto passed = std::ranges::count_if(
         stability, [](const Json& row) { return row.value("passed", false); });
     all.push_back(std::to_string(passed) + " of " + std::to_string(stability.size()) +
-                  " hard cases end as they should.");
+                  " runs of hard cases (each with curves met both ways) end as the tests expect.");
   }
   return all;
 }

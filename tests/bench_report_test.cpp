@@ -68,7 +68,7 @@ TEST_F(BenchReport, makes_one_page_with_tables_plots_and_what_is_lost) {
   EXPECT_TRUE(holds(page, "<td>drumhead, averaged, 1 thread</td>"));
   EXPECT_TRUE(holds(page, "<td class=\"number\">0.004</td>"));
   EXPECT_TRUE(holds(page, "<title>drumhead, averaged, 1: 100; 0.004</title>"));
-  EXPECT_TRUE(holds(page, "Rival takes 0.001 s at 100², 1 threads; drumhead 0.004 s."));
+  EXPECT_TRUE(holds(page, "Rival takes 0.001 s at 100², 1 thread; drumhead 0.004 s."));
   EXPECT_TRUE(holds(page, "solve: S5 kappa 7, 100²: limit."));
   EXPECT_TRUE(holds(page, "speed_bench table1</td><td>2026-01-02T03:04:05Z</td><td>abc1234</td>"));
   EXPECT_TRUE(holds(page, "Not measured yet."));
