@@ -125,7 +125,7 @@ Losses rates(const Rows& rows) {
                                               : std::string());
     if (!ours.value("converged", true)) found.words.push_back(where + ": gcr does not converge.");
     for (const Json& peer : rows)
-      if (text(peer, "solver") != "gcr" && peer.value("converged", true) &&
+      if (!text(peer, "solver").starts_with("gcr") && peer.value("converged", true) &&
           same(ours, peer, {"scene", "kappa", "n", "weight"}) &&
           value(peer, "work_units_per_digit") < value(ours, "work_units_per_digit"))
         found.words.push_back(where + ": " + text(peer, "solver") + " takes " +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace drumhead::bench {
 namespace {
@@ -146,7 +147,11 @@ void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
     }
 }
 
-bool hard(const Json& row) { return !row.contains("weight") || std::isinf(value(row, "weight")); }
+/// d of the curves; they are hard where a row names none.
+double weight_of(const Json& row) {
+  return row.contains("weight") ? value(row, "weight") : std::numeric_limits<double>::infinity();
+}
+bool hard(const Json& row) { return std::isinf(weight_of(row)); }
 
 void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
   const Rows every =
@@ -203,14 +208,14 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
                       .x_name = "d, stiffness per length, in mu per picture side",
                       .y_name = "work units per digit"}};
   Rows ascending = soft;
-  std::ranges::stable_sort(ascending, {}, number_of("weight"));
+  std::ranges::stable_sort(ascending, {}, weight_of);
   weights.plot.x_words =
-      distinct(ascending, [](const Json& row) { return figure(value(row, "weight")); });
+      distinct(ascending, [](const Json& row) { return figure(weight_of(row)); });
   const auto stiffness = [words = weights.plot.x_words](const Json& row) {
-    return double(std::ranges::find(words, figure(value(row, "weight"))) - words.begin());
+    return double(std::ranges::find(words, figure(weight_of(row))) - words.begin());
   };
   weights.plot.series = lines_of(
-      soft,
+      ascending,
       [&](const Json& row) { return scene_and_kappa(row) + ", " + figure(value(row, "n")) + "²"; },
       stiffness, rate);
   for (std::size_t k = 0; k < weights.plot.series.size(); ++k)
