@@ -55,4 +55,14 @@ void check(const Material& material, const Lattice& lattice) {
   }
 }
 
+double largest_stiffness(const Material& material) {
+  const std::vector<float>&mu = material.mu_cells, &kappa = material.kappa_cells;
+  if (mu.empty() && kappa.empty()) return material.kappa;
+  double largest = 0.0;
+  for (std::size_t c = 0; c < std::max(mu.size(), kappa.size()); ++c)
+    largest = std::max(largest, (kappa.empty() ? material.kappa : double(kappa[c])) /
+                                    (mu.empty() ? 1.0 : double(mu[c])));
+  return largest;
+}
+
 }  // namespace drumhead::grid

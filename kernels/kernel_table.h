@@ -28,10 +28,11 @@ struct KernelTable {
   void (*energy)(const Membrane<T>&, const ConstFields& d, T step, bool moved,
                  const Columns& left_out, EnergySums&, int j);
 
-  void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour, int j);
+  void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour,
+                      Spans nodes, int j);
   void (*start_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int j);
   void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
-                       int j);
+                       Spans cells, int j);
 
   void (*kaczmarz_nodes)(const KaczmarzSystem<T>&, Reach, int j);
   void (*kaczmarz_cells)(const KaczmarzSystem<T>&, Reach, int parity, int j);

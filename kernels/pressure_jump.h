@@ -74,16 +74,18 @@ struct PressureJump {
   }
 };
 
-/// body(lane, zero, k, has_west, has_east) for the cells of one parity in a row of `columns` cells:
-/// the first and the last column one by one.
+/// body(lane, zero, k, has_west, has_east) for the cells k in `range` of one parity in a row of
+/// `columns` cells: the first and the last column one by one.
 template <class T, class F>
-void for_cells_of_row(int columns, int parity, F&& body) {
+void for_cells_of_row(int columns, int parity, Range range, F&& body) {
   const int last = columns - 1, count = half_count(columns, parity);
   const int first = parity == 0 ? 1 : 0;
   const int end = (last & 1) == parity ? count - 1 : count;
-  if (first == 1 && count > 0) body(Lane<T>{}, T(0), 0, false, last > 0);
-  for_lanes<T>(first, end, [&](auto lane, auto zero, int k) { body(lane, zero, k, true, true); });
-  if (end < count && end >= first) body(Lane<T>{}, T(0), end, last > 0, false);
+  if (first == 1 && range.begin == 0 && range.end > 0) body(Lane<T>{}, T(0), 0, false, last > 0);
+  for_lanes<T>(range.begin > first ? range.begin : first, range.end < end ? range.end : end,
+               [&](auto lane, auto zero, int k) { body(lane, zero, k, true, true); });
+  if (end < count && end >= first && range.begin <= end && range.end > end)
+    body(Lane<T>{}, T(0), end, last > 0, false);
 }
 
 /// out += sign · the jump term of dP in cell row j.
@@ -93,7 +95,7 @@ void add_pressure_jump_row(const Membrane<T>& m, const Plane<const T>& p, T sign
   for (int parity = 0; parity < 2; ++parity) {
     const PressureJump<T> jump(m, p, j, parity);
     T* row = out.half[parity];
-    for_cells_of_row<T>(p.columns, parity,
+    for_cells_of_row<T>(p.columns, parity, {0, half_count(p.columns, parity)},
                         [&](auto lane, auto zero, int k, bool has_west, bool has_east) {
                           using B = decltype(zero);
                           const JumpSums<B> sums = jump(lane, zero, k, has_west, has_east);

@@ -237,11 +237,11 @@ class Relaxation {
   }
   void nodes(int colour, T* kept, int j) const {
     keeping_near(colour, kept, j,
-                 [&] { kernels_.relax_nodes(level_.membrane, f_, d_, colour, j); });
+                 [&] { kernels_.relax_nodes(level_.membrane, f_, d_, colour, {}, j); });
   }
   void near(int j) const { relax_near_row(*special_, f_, d_, j); }
   void volume(int parity, bool reverse, T* kept, int j) const {
-    auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, j); };
+    auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, {}, j); };
     if (!special_) return sweep();
     keep_special_row(*special_, level_.f, d_, parity, j, kept, sweep);
     relax_part_row(*special_, level_.membrane, f_, d_, parity, reverse, j);
@@ -323,6 +323,31 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
 }
 
 template <class T>
+void relax_band(const LevelSystem<T>& level) {
+  const KernelTable<T>& kernels = table<T>();
+  const Membrane<T>& m = level.membrane;
+  const Unknowns<T>& d = level.d;
+  const Unknowns<const T> f = level.f;
+  const Cuts<T>& cuts = level.cuts;
+  const StageList list = list_stages({}, false, false, bool(d.p), true, false);
+  skewed_sweeps(d.x.rows - 1, list.count, 0, [&](int s, int j, int) {
+    const Stage& stage = list.at[std::size_t(s)];
+    const Spans band{cuts.band + cuts.band_begin[j], cuts.band + cuts.band_begin[j + 1]};
+    if (band.first == band.last) return;
+    if (stage.sweep == Sweep::nodes) {
+      if (j > 0) kernels.relax_nodes(m, f, d, stage.colour, band, j);
+    } else if ((j & 1) != stage.colour) {
+      return;
+    } else if (stage.sweep == Sweep::cuts) {
+      relax_cuts_row(m, cuts, level.fq, level.dq, d, level.f, stage.reverse, j);
+    } else {
+      for (const int parity : {int(stage.reverse), int(!stage.reverse)})
+        kernels.relax_volume(m, f, d, parity, band, j);
+    }
+  });
+}
+
+template <class T>
 double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   if (isotropic(level.membrane.law.model)) return isotropic_residual_norm2(level);
   const KernelTable<T>& kernels = table<T>();
@@ -361,6 +386,8 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
 
 template double residual_norm2(const LevelSystem<float>&, RowScratch<float>&);
 template double residual_norm2(const LevelSystem<double>&, RowScratch<double>&);
+template void relax_band(const LevelSystem<float>&);
+template void relax_band(const LevelSystem<double>&);
 template class RowScratch<float>;
 template class RowScratch<double>;
 template void relax(const LevelSystem<float>&, const RelaxStages&, const Unknowns<const float>*,

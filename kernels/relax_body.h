@@ -6,29 +6,38 @@
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
-/// Nodes of row j with i + j + colour even: both components of d += (f − H d)/K_ii. The components
-/// couple only across colours, so updating them together is Gauss–Seidel in the two colours.
+/// The part of k in [range.begin, range.end), columns 2k + parity, that is in a span.
+inline Range within(Range range, Span span, int parity) {
+  const int begin = (span.begin - parity + 1) >> 1, end = (span.end - parity + 1) >> 1;
+  return {begin > range.begin ? begin : range.begin, end < range.end ? end : range.end};
+}
+
+/// Nodes of some spans of row j with i + j + colour even: both components of d += (f − H d)/K_ii.
+/// The components couple only across colours, so updating them together is Gauss–Seidel in the two
+/// colours.
 template <class T>
 [[gnu::flatten]] void relax_nodes_row(const Membrane<T>& m, const Unknowns<const T>& f,
-                                      const Unknowns<T>& d, int colour, int j) {
+                                      const Unknowns<T>& d, int colour, Spans nodes, int j) {
   with_scene(m, [&](auto pressure, auto mu_cells) {
     const int parity = (j + colour) & 1;
     const NodeStencil<T, pressure.value, mu_cells.value> stencil(m, d, j, parity);
-    const Range range = interior(d.x.columns, parity);
     T *dx = d.x.half(j, parity), *dy = d.y.half(j, parity);
     const T *fx = f.x.half(j, parity), *fy = f.y.half(j, parity);
     const T* fp = pressure.value ? f.p.half(j, parity) : nullptr;
     // Each colour asks for its half of the rows ahead of both; black works two rows behind red.
     const int ahead = colour == 0 ? 3 : 5;
-    for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
-      stencil.prefetch(k, ahead);
-      for (const T* at : {fx, fy}) __builtin_prefetch(at + k + ahead * stencil.node_row);
-      if constexpr (pressure.value) __builtin_prefetch(fp + k + ahead * stencil.cell_row);
-      decltype(zero) hx, hy, inverse;
-      stencil.apply(lane, zero, k, hx, hy, inverse);
-      lane.store(lane.load(dx + k) + (lane.load(fx + k) - hx) * inverse, dx + k);
-      lane.store(lane.load(dy + k) + (lane.load(fy + k) - hy) * inverse, dy + k);
-    });
+    for (const Span span : nodes) {
+      const Range range = within(interior(d.x.columns, parity), span, parity);
+      for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
+        stencil.prefetch(k, ahead);
+        for (const T* at : {fx, fy}) __builtin_prefetch(at + k + ahead * stencil.node_row);
+        if constexpr (pressure.value) __builtin_prefetch(fp + k + ahead * stencil.cell_row);
+        decltype(zero) hx, hy, inverse;
+        stencil.apply(lane, zero, k, hx, hy, inverse);
+        lane.store(lane.load(dx + k) + (lane.load(fx + k) - hx) * inverse, dx + k);
+        lane.store(lane.load(dy + k) + (lane.load(fy + k) - hy) * inverse, dy + k);
+      });
+    }
   });
 }
 
@@ -98,10 +107,10 @@ void relax_volume(L lane, B zero, const CellStencil<T>& stencil, const Corners<T
   lane.store(y10 - d1x * (v * inverse.i10), y.n10 + k);
 }
 
-/// Volume rows of the cells of columns 2k + parity in row j; they share no node.
+/// Volume rows of the cells of columns 2k + parity in some spans of row j; they share no node.
 template <bool kJump, class T>
 void relax_volume_cells(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<T>& d,
-                        int parity, int j) {
+                        int parity, Spans spans, int j) {
   const CellStencil<T> stencil(m, j, parity);
   const Corners<T> x(d.x, j, parity), y(d.y, j, parity);
   const CellCompliance<T> compliance(m, j, parity);
@@ -114,29 +123,32 @@ void relax_volume_cells(const Membrane<T>& m, const Unknowns<const T>& f, const 
   const bool cells = bool(m.inverse_diagonal);
   const Corners<const T> diagonal =
       cells ? Corners<const T>(m.inverse_diagonal, j, parity) : Corners<const T>{};
-  for_cells_of_row<T>(d.p.columns, parity,
-                      [&](auto lane, auto zero, int k, bool has_west, bool has_east) {
-                        using B = decltype(zero);
-                        JumpSums<B> jump{zero, zero};
-                        if constexpr (kJump) jump = jumps(lane, zero, k, has_west, has_east);
-                        // A side of the first and of the last cell lies on the fixed boundary.
-                        const T w = T(has_west), e = T(has_east);
-                        CornerInverse<B> at{B(w * south), B(e * south), B(w * north), B(e * north)};
-                        if (cells)
-                          at = {lane.load(diagonal.n00 + k), lane.load(diagonal.n10 + k),
-                                lane.load(diagonal.n01 + k), lane.load(diagonal.n11 + k)};
-                        relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k),
-                                     jump, B(floor), at, k);
-                      });
+  const Range row{0, half_count(d.p.columns, parity)};
+  for (const Span span : spans)
+    for_cells_of_row<T>(
+        d.p.columns, parity, within(row, span, parity),
+        [&](auto lane, auto zero, int k, bool has_west, bool has_east) {
+          using B = decltype(zero);
+          JumpSums<B> jump{zero, zero};
+          if constexpr (kJump) jump = jumps(lane, zero, k, has_west, has_east);
+          // A side of the first and of the last cell lies on the fixed boundary.
+          const T w = T(has_west), e = T(has_east);
+          CornerInverse<B> at{B(w * south), B(e * south), B(w * north), B(e * north)};
+          if (cells)
+            at = {lane.load(diagonal.n00 + k), lane.load(diagonal.n10 + k),
+                  lane.load(diagonal.n01 + k), lane.load(diagonal.n11 + k)};
+          relax_volume(lane, zero, stencil, x, y, g, p, compliance(lane, zero, k), jump, B(floor),
+                       at, k);
+        });
 }
 
 template <class T>
 [[gnu::flatten]] void relax_volume_row(const Membrane<T>& m, const Unknowns<const T>& f,
-                                       const Unknowns<T>& d, int parity, int j) {
+                                       const Unknowns<T>& d, int parity, Spans cells, int j) {
   if (m.pressure_jump > T(0))
-    relax_volume_cells<true>(m, f, d, parity, j);
+    relax_volume_cells<true>(m, f, d, parity, cells, j);
   else
-    relax_volume_cells<false>(m, f, d, parity, j);
+    relax_volume_cells<false>(m, f, d, parity, cells, j);
 }
 
 }  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

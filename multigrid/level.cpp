@@ -4,9 +4,16 @@
 #include <algorithm>
 
 namespace drumhead::multigrid {
+namespace {
+
+// Half width of the band beside the curves. What the first cycles leave at S1, kappa 100, 400²:
+// .33, .52 with 1, .28, .56 with 2, .22, .58 with 3 (and two such sweeps a cycle).
+constexpr int kBand = 2;
+
+}  // namespace
 
 template <class T>
-CutRows<T>::CutRows(const grid::CutCells& cuts)
+CutRows<T>::CutRows(const grid::CutCells& cuts, int columns)
     : row_begin_(cuts.row_begin),
       column_(cuts.column),
       link_begin_(cuts.link_begin),
@@ -16,6 +23,28 @@ CutRows<T>::CutRows(const grid::CutCells& cuts)
   for (const auto& weight : cuts.weight)
     for (const double w : weight) weight_.push_back(T(w));
   divide_jump({});
+  set_band(columns);
+}
+
+template <class T>
+void CutRows<T>::set_band(int columns) {
+  const int rows = int(row_begin_.size()) - 1;
+  std::vector<int> cut;
+  for (int j = 0; j < rows; ++j) {
+    band_begin_.push_back(int(band_.size()));
+    const int low = row_begin_[std::size_t(std::max(0, j - kBand))];
+    const int high = row_begin_[std::size_t(std::min(rows, j + kBand + 1))];
+    cut.assign(column_.begin() + low, column_.begin() + high);
+    std::ranges::sort(cut);
+    for (const int i : cut) {
+      const int begin = std::max(0, i - kBand), end = std::min(columns, i + kBand + 1);
+      if (int(band_.size()) > band_begin_.back() && begin <= band_.back().end)
+        band_.back().end = end;
+      else
+        band_.push_back({begin, end});
+    }
+  }
+  band_begin_.push_back(int(band_.size()));
 }
 
 template <class T>
@@ -52,12 +81,17 @@ kernels::Cuts<T> CutRows<T>::view(T jump) const {
           .link_begin = link_begin_.data(),
           .link = link_.data(),
           .link_strength = strength_.data(),
-          .jump = jump};
+          .jump = jump,
+          .band_begin = band_begin_.data(),
+          .band = band_.data()};
 }
 
 template <class T>
 std::size_t CutRows<T>::bytes() const {
-  return (row_begin_.size() + column_.size() + link_begin_.size() + link_.size()) * sizeof(int) +
+  return band_.size() * sizeof(kernels::Span) +
+         (band_begin_.size() + row_begin_.size() + column_.size() + link_begin_.size() +
+          link_.size()) *
+             sizeof(int) +
          (weight_.size() + compliance_.size() + length_.size() + link_diagonal_.size() +
           strength_.size()) *
              sizeof(T);

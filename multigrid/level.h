@@ -19,7 +19,8 @@ namespace drumhead::multigrid {
 
 /// What of a scene decides which fields exist and how the rows are softened.
 struct SceneTraits {
-  bool pressure = true;  ///< crpm with kappa > 0 somewhere
+  bool pressure = true;    ///< crpm with kappa > 0 somewhere
+  double stiffness = 0.0;  ///< largest kappa/mu of a cell
   kernels::Model model = kernels::Model::crpm;
   double jump = 0.0;           ///< qs of the equations: 0 for exact rows
   double jump_inside = 0.005;  ///< qs of the preconditioner
@@ -31,7 +32,8 @@ template <class T>
 class CutRows {
  public:
   CutRows() = default;
-  explicit CutRows(const grid::CutCells& cuts);
+  /// Of a lattice that is `columns` cells wide.
+  CutRows(const grid::CutCells& cuts, int columns);
   kernels::Cuts<T> view(T jump) const;
   int size() const { return int(length_.size()); }
   std::size_t bytes() const;
@@ -40,7 +42,11 @@ class CutRows {
   void divide_jump(const kernels::Plane<const T>& mu);
 
  private:
-  std::vector<int> row_begin_, column_, link_begin_, link_;
+  /// The cells within kBand columns and rows of a cut one.
+  void set_band(int columns);
+
+  std::vector<int> row_begin_, column_, link_begin_, link_, band_begin_;
+  std::vector<kernels::Span> band_;
   std::vector<T> weight_, compliance_, length_, link_diagonal_, strength_;
 };
 

@@ -24,7 +24,7 @@ constexpr double kFoldTolerance = 0.03;
 // Onset of the corners' resistance at the end, in J, likewise, and on levels that only start the
 // next one; 0 where a tolerance was asked for.
 constexpr double kOnset = 0.02, kCoarseOnset = 0.1;
-constexpr int kLevelSteps = 20;
+constexpr int kLevelSteps = 20, kFinestSteps = 40;
 constexpr int kPathSteps = 12;
 constexpr int kStepsPerPathStep = 4;
 // Error left on levels that only start the next one, and on the finest: share of the estimated
@@ -34,6 +34,14 @@ constexpr double kShare = 0.1;
 // error for less than accurate linear solutions: S1 kappa 1, 800²: 121 work units with .1, 77 with
 // .6; S2 kappa 10: 157 and 103.
 constexpr double kContent = 0.6, kStartContent = 0.3, kHarmonic = 0.05;
+// And where cycles alone do not reach that, GCR's. S4, kappa 100, 100²: seven cycles for a step
+// with .1, two with .3. So few cycles need few directions: 20 are no better, with 4 S5 does not end
+// (kappa 1e4, 128²).
+constexpr double kReduction = 0.3, kAccurate = 0.1;
+constexpr int kDirections = 6;
+// From this kappa/mu on contraction is at first better than it stays: S4, kappa 100, 100² ended
+// with .26 of the discretisation error, thought to be .08.
+constexpr double kStiff = 30.0, kStiffRate = 0.5;
 // Exact constraints: no node moves further than this in the last step, in finest cells.
 constexpr double kExactMove = 1e-7;
 constexpr int kExactSteps = 400;
@@ -65,6 +73,10 @@ template <class T>
 LinearOptions linear_options(const Level<T>& level, bool start) {
   LinearOptions linear;
   linear.content = start ? kStartContent : kContent;
+  if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
+    linear.reduction = kReduction;
+    if (level.nodes() >= kSmallNodes) linear.directions = kDirections;
+  }
   // Small lattices can afford directions, and the states on the way to the first solution need
   // them.
   if (start) {
@@ -171,11 +183,12 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     std::optional<LevelCopy<T>> coarse;
     newton_options.linear = linear_options(level, l == start);
     newton_options.linear.solver = options.solver;
-    newton_options.most_steps = kLevelSteps;
+    newton_options.most_steps = l > 0 ? kLevelSteps : kFinestSteps;
     // Two steps on the coarser levels measure the contraction that the finest may then count on.
     newton_options.least_steps = l > 0 ? 2 : 1;
     newton_options.share_of_change = kShare * options.discretisation_share;
     newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
+    newton_options.most_volume_gap = l == 0 && !level.conforming ? kMostVolumeGap : 0.0;
     if (l == start) {
       newton_options.most_steps = kStartSteps;
       newton_options.share_of_change = 0.0;
@@ -194,23 +207,26 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       newton_options.share_of_change = 0.0;
       newton_options.tolerance_rms = options.tolerance_cells;
       // The moves of loosely solved steps say too little of pressures that are slow to settle.
-      newton_options.linear.content = newton_options.linear.reduction;
+      newton_options.linear.content = newton_options.linear.reduction = kAccurate;
       newton_options.expected_rates.clear();
     }
     if (level.solid.law.relief > T(0)) {
       newton_options.most_steps = kFoldSteps;
-      newton_options.linear.content = newton_options.linear.reduction;
+      newton_options.linear.content = newton_options.linear.reduction = kAccurate;
       if (l == start && (l > 0 || options.tolerance_cells == 0.0))
         newton_options.tolerance_rms = kFoldTolerance * double(level.spacing);
       newton_options.onset = l > 0 ? kCoarseOnset : options.tolerance_cells > 0.0 ? 0.0 : kOnset;
     }
     NewtonReport done = newton.run(newton_options, clamp, progress);
+    newton_options.least_rate = hierarchy.traits().stiffness >= kStiff ? kStiffRate : 0.0;
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
     if (l == 0 && options.exact && done.status != Status::not_finite)
       done = without_jump(hierarchy, options.solver, newton, std::move(done), progress);
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
+    report.volume_gap =
+        level.conforming ? std::numeric_limits<double>::quiet_NaN() : done.volume_gap;
     LevelChange change{done.change_rms, done.change_max};
     double share =
         l == start ? std::numeric_limits<double>::quiet_NaN() : options.discretisation_share;

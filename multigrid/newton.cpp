@@ -41,8 +41,9 @@ constexpr double kUnsolved = 0.3;
 constexpr int kMostPatience = 32;
 // A full step this large beside the one before may well undo it; two in a row do.
 constexpr double kBackAndForth = 0.9;
-// After a shortened step linear systems are solved to this residual at least. (Also where the norm
-// of all equations did not show a step to be good: S1 kappa 10, 400², 912 work units, 379 without.)
+// After a shortened step linear systems are solved to this residual at least, by cycles or by GCR.
+// (Also where the norm of all equations did not show a step to be good: S1 kappa 10, 400², 912 work
+// units, 379 without.)
 constexpr double kCareful = 0.1;
 
 }  // namespace
@@ -142,6 +143,28 @@ double Newton<T>::force_norm(bool pressure) {
   return std::sqrt(sum);
 }
 
+/// See NewtonReport; at the state whose force was set last, which has −A (J* − 1 − P/kappa).
+template <class T>
+double Newton<T>::volume_gap(double enough) const {
+  const double area = double(level_.spacing) * double(level_.spacing);
+  const kernels::Plane<const T> g = level_.f.view().p, mu = level_.mu.view();
+  const kernels::Plane<const T> compliance = level_.compliance.view();
+  if (!level_.pressure || (!compliance && level_.compliance_value == T(0))) return 0.0;
+  double gap = 0.0, rest = double(level_.nx) * double(level_.ny);
+  if (!compliance) gap = kernels::dot<T>(g, g) / double(level_.compliance_value);
+  if (mu) rest = 0.0;
+  for (int j = 0; j < level_.ny && (compliance || mu); ++j)
+    for (int i = 0; i < level_.nx; ++i) {
+      if (compliance && compliance.at(i, j) > T(0))
+        gap += double(g.at(i, j)) * double(g.at(i, j)) / double(compliance.at(i, j));
+      if (mu) rest += double(mu.at(i, j));
+    }
+  gap *= 0.5 / area;
+  if (enough == 0.0 || gap <= enough * area * rest) return gap / (area * rest);
+  const kernels::EnergySums sums = kernels::energy<T>(level_.membrane(), {}, T(0));
+  return gap / (sums.elastic + sums.volume);
+}
+
 template <class T>
 double Newton<T>::line_search(double longest) {
   prepare_curve_merit();
@@ -186,6 +209,28 @@ double Newton<T>::take_step(double norm_before, double longest) {
   if (step > 0.0) update(step, pressure);
   norm_ = force_norm(pressure);
   return step;
+}
+
+/// Leaves volume and curve rows alone in the force that was set last; returns its norm.
+template <class T>
+double Newton<T>::drop_momentum() {
+  const kernels::Unknowns<T> f = level_.f.view();
+  const kernels::Unknowns<T> nodes{f.x, f.y, {}};
+  kernels::combine<T>(T(0), nodes, T(0), nodes);
+  double sum = kernels::dot<T>(f.p, f.p) / double(level_.spacing * level_.spacing);
+  for (const T value : level_.fq) sum += double(value) * double(value);
+  return std::sqrt(sum);
+}
+
+/// A step that mends areas alone is taken if it does.
+template <class T>
+double Newton<T>::take_area_step(double gap, double enough) {
+  update(1.0, true);
+  norm_ = force_norm(true);
+  if (volume_gap(enough) < gap) return 1.0;
+  update(-1.0, true);
+  norm_ = force_norm(true);
+  return 0.0;
 }
 
 template <class T>
@@ -302,7 +347,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     if (progress) progress(n + 1);
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
-    const double norm = norm_;
+    const bool areas = judge.only_areas_lack();
+    const double norm = areas ? drop_momentum() : norm_;
     if (options.adaptive) accuracy.set(norm, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
@@ -314,13 +360,14 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       return report;
     }
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
-    step.step = take_step(norm, longest);
+    step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)
+                      : take_step(norm, longest);
     const bool shortened = step.step < longest;
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
     if (options.adaptive && accuracy.raised_by(step, report)) continue;
-    const bool ends = judge.ends_with(step, precision());
+    const bool ends = judge.ends_with(step, precision(), volume_gap(options.most_volume_gap));
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor()) {
       if (corners.act() && !corners.unfolded()) report.status = Status::stalled;
@@ -333,7 +380,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     in_circles = undone && longest == 1.0 ? in_circles + 1 : 0;
     longest = in_circles >= 2 ? 0.5 : 1.0;
     rms_before = rms;
-    if (shortened) linear_options.content = std::min(linear_options.content, kCareful);
+    if (shortened) {
+      linear_options.content = std::min(linear_options.content, kCareful);
+      linear_options.reduction = std::min(linear_options.reduction, kCareful);
+    }
     followed = corners.act() && !shortened && (ends || corners.followed(norm_));
     if (followed) {
       corners.move();

@@ -28,12 +28,15 @@ struct NewtonOptions {
   /// Besides: stop when the error left is under this share of the RMS of all that Newton changed on
   /// the level, of which the discretisation error is a fixed share in turn. 0: not a criterion.
   double share_of_change = 0.0;
+  double most_volume_gap = 0.0;  ///< and, if > 0, not before NewtonReport::volume_gap is below
   int least_steps = 1;
   int most_steps = 8;
   /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor
   /// is expected to do before it is taken.
   std::vector<double> expected_rates;
   double onset = 0.0;  ///< arap: of the one-sided term at the end (corners.h)
+  /// No step without such a model is expected to contract by more than this.
+  double least_rate = 0.0;
   LinearOptions linear;
   /// Exact rows: linear.reduction is the residual wanted at first, less where Newton's method
   /// converges fast or where steps are shortened.
@@ -45,7 +48,11 @@ struct NewtonReport {
   std::vector<NewtonStep> steps;              ///< dx in finest cells here
   double error_rms = 0.0, error_max = 0.0;    ///< estimated algebraic error left, finest cells
   double change_rms = 0.0, change_max = 0.0;  ///< all that Newton changed, finest cells
-  std::vector<double> rates;                  ///< contractions observed, for the next level
+  /// Σ A kappa/2 (J* − 1 − P/kappa)², by how much the energy exceeds Eq. 5 at the same state: as a
+  /// share of the energy at rest, Σ A mu, where that is below most_volume_gap or none is asked for,
+  /// else of the energy. Without cells that conform to curves, and where 1/kappa is 0.
+  double volume_gap = 0.0;
+  std::vector<double> rates;  ///< contractions observed, for the next level
 };
 
 /// What the clamp schedule remembers from level to level.
@@ -81,8 +88,11 @@ class Newton {
   double curve_work(double step) const;
   void prepare_curve_merit();
   double force_norm(bool pressure);
+  double volume_gap(double enough) const;
   double line_search(double longest);
   double take_step(double norm_before, double longest);
+  double drop_momentum();
+  double take_area_step(double gap, double enough);
   int inverted_cells() const;
   void update(double step, bool pressure);
   bool lower_floor();

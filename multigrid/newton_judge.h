@@ -17,8 +17,17 @@ class Judge {
   Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
 
   /// True if the run ends with this step; the report then has its status. `rounding`: moves below
-  /// it are noise.
-  bool ends_with(const NewtonStep& step, double rounding) {
+  /// it are noise; `volume_gap`: see NewtonReport.
+  bool ends_with(const NewtonStep& step, double rounding, double volume_gap) {
+    const double gap_before = report_.volume_gap;
+    report_.volume_gap = volume_gap;
+    if (only_areas_lack_) {
+      report_.steps.push_back(step);
+      // Solved, and no better: curves and areas contradict one another.
+      const bool in_vain = step.residual <= kUnsolved && volume_gap > kInVain * gap_before;
+      only_areas_lack_ = step.step > 0.0 && !areas_done();
+      return (areas_done() || in_vain) && end(Status::converged);
+    }
     const bool first = report_.steps.empty();
     const NewtonStep before = first ? step : report_.steps.back();
     report_.steps.push_back(step);
@@ -40,13 +49,19 @@ class Judge {
     const double left = std::max(rate, step.residual) / (1.0 - rate);
     report_.error_rms = left * step.dx_rms_px;
     report_.error_max = left * step.dx_max_px;
-    // Where a step was shortened or theta lowered, one small step may be chance.
-    trouble_ = trouble_ || !full || !comparable;
+    // Soon after a step was shortened or theta lowered, one small step may be chance.
+    calm_ = full && comparable ? calm_ + 1 : 0;
     settled_ = full && comparable && solved && small(step, rounding) ? settled_ + 1 : 0;
     const bool enough = int(report_.steps.size()) >= options_.least_steps;
-    if (enough && settled_ >= (trouble_ ? 2 : 1)) return end(Status::converged);
+    const bool settled = enough && settled_ >= (calm_ < kCalm ? 2 : 1);
+    if (settled && areas_done()) return end(Status::converged);
+    only_areas_lack_ = settled;
     return full && step.dx_rms_px <= rounding && end(Status::stalled);
   }
+
+  /// Nodes have moved enough, but volume rows leave too much: the next step is for them (and curve
+  /// rows) alone, without the momentum that drives the slow rest. Ends with the run or a step of 0.
+  bool only_areas_lack() const { return only_areas_lack_; }
 
  private:
   // So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr,
@@ -59,6 +74,10 @@ class Judge {
   // So many steps in a row shorter than kCreep lead nowhere.
   static constexpr double kCreep = 1e-2;
   static constexpr int kMostCreeping = 5;
+  // Share of the volume gap that a step for areas leaves if it is of no use.
+  static constexpr double kInVain = 0.9;
+  // So many full steps make up for a shortened one.
+  static constexpr int kCalm = 10;
 
   /// Contraction expected of the next step: that of the same step on the level before, made worse
   /// by as much as this step was worse than its own; without a model, the worse of the
@@ -67,7 +86,7 @@ class Judge {
     const std::vector<double>& expected = options_.expected_rates;
     const std::size_t n = report_.steps.size();  // this step is the n-th
     if (n > 1) report_.rates.push_back(seen);
-    double rate = std::max(seen, seen_before_);
+    double rate = std::max({seen, seen_before_, options_.least_rate});
     seen_before_ = n > 1 ? seen : 0.0;
     if (n <= expected.size()) {
       rate = expected[n - 1];
@@ -83,6 +102,9 @@ class Judge {
     return report_.error_rms <= wanted &&
            (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
   }
+  bool areas_done() const {
+    return options_.most_volume_gap == 0.0 || report_.volume_gap <= options_.most_volume_gap;
+  }
   bool end(Status status) {
     report_.status = status;
     return true;
@@ -90,9 +112,9 @@ class Judge {
 
   const NewtonOptions& options_;
   NewtonReport& report_;
-  int creeping_ = 0, settled_ = 0, unsolved_ = 0;
+  int creeping_ = 0, settled_ = 0, unsolved_ = 0, calm_ = kCalm;
   double seen_before_ = 0.0;
-  bool trouble_ = false;
+  bool only_areas_lack_ = false;
 };
 
 }  // namespace drumhead::multigrid

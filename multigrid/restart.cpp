@@ -119,6 +119,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   const double cell_px = start.lattice.cell_px;
   NewtonOptions newton;
   newton.most_steps = kMostSteps;
+  newton.most_volume_gap = kMostVolumeGap;
   newton.linear.content = kContent;
   newton.expected_rates = {kFirstRate};
   const SolveReport& before = start.report;
@@ -140,6 +141,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   report.status = done.status;
   report.algebraic_rms_px = done.error_rms * cell_px;
   report.algebraic_max_px = done.error_max * cell_px;
+  report.volume_gap = done.volume_gap;
   report.discretisation_rms_px = before.discretisation_rms_px;
   report.discretisation_max_px = before.discretisation_max_px;
   report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));

@@ -206,6 +206,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const grid::Material material =
       options.exact ? problem.material : capped(problem.material, report);
   const SceneTraits traits{.pressure = has_pressure(material),
+                           .stiffness = grid::largest_stiffness(material),
                            .model = material.model,
                            .jump = kJump,
                            .jump_inside = kJump,
@@ -261,6 +262,14 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   }
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
+}
+
+/// Says so where areas could not be had.
+void note_areas(SolveReport& report) {
+  if (report.status == Status::converged && report.volume_gap > kMostVolumeGap)
+    report.notes.push_back("curves and areas contradict one another on this lattice: " +
+                           std::to_string(100.0 * report.volume_gap) +
+                           " % of the energy is the error of areas");
 }
 
 /// Says which hard curves miss their targets visibly: the rows of a cell hold on average only,
@@ -388,6 +397,7 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
     solution = solve_averaged_instead(problem, chosen, std::move(solution));
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
+  if (!options.exact) note_areas(solution.report);
   solution.report.folds = find_folds(solution);
   note_folds(problem.material, solution.report);
   const kernels::Model model = problem.material.model;

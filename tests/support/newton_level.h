@@ -29,7 +29,11 @@ class NewtonLevel {
             grid::cut(method == multigrid::CurveMethod::averaged ? problem.curves
                                                                  : std::vector<grid::CurvePair>{},
                       problem.lattice, kMostWeight),
-            {.pressure = problem.material.kappa > 0.0, .jump = jump, .jump_inside = jump}, meter_) {
+            {.pressure = problem.material.kappa > 0.0,
+             .stiffness = grid::largest_stiffness(problem.material),
+             .jump = jump,
+             .jump_inside = jump},
+            meter_) {
     if (method == multigrid::CurveMethod::conforming)
       hierarchy_.conform(problem.curves, problem.lattice, meter_);
     multigrid::SolveReport report;

@@ -23,4 +23,7 @@ struct Material {
 /// Throws std::invalid_argument naming the value, the cell and the bound.
 void check(const Material& material, const Lattice& lattice);
 
+/// Largest kappa/mu of a cell, in units of the scene's values.
+double largest_stiffness(const Material& material);
+
 }  // namespace drumhead::grid

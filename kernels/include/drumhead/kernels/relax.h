@@ -85,4 +85,9 @@ template <class T>
 void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch);
 
+/// One more relaxation, without transfers, of the nodes and cells in the band beside the curves
+/// (Cuts::band) and of the curve rows. Runs on the calling thread.
+template <class T>
+void relax_band(const LevelSystem<T>& level);
+
 }  // namespace drumhead::kernels

@@ -37,6 +37,18 @@ struct Plane {
 /// Columns of one parity among `columns`.
 constexpr int half_count(int columns, int parity) { return (columns + 1 - parity) / 2; }
 
+/// The columns begin … end − 1 of a row, as far as it has them.
+struct Span {
+  int begin = 0, end = 1 << 30;
+};
+inline constexpr Span kWholeRow{};
+/// Spans of a row, ascending and disjoint.
+struct Spans {
+  const Span *first = &kWholeRow, *last = &kWholeRow + 1;  ///< [first, last)
+  const Span* begin() const { return first; }
+  const Span* end() const { return last; }
+};
+
 /// Some columns of a row, ascending.
 struct Columns {
   const int *first = nullptr, *last = nullptr;  ///< [first, last)
@@ -139,6 +151,9 @@ struct Cuts {
   const int* link = nullptr;         ///< cuts that follow or precede along a curve
   const T* link_strength = nullptr;  ///< min(len_k, len_l)²/(len_k len_l)
   T jump = T(0);                     ///< qs/mu; 0: exact rows
+  /// The band of cells beside the curves: ny+1 indices into its spans of columns, sorted, disjoint.
+  const int* band_begin = nullptr;
+  const Span* band = nullptr;
 };
 
 }  // namespace drumhead::kernels
