@@ -264,18 +264,13 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }
 
-/// Says so where areas could not be had.
-void note_areas(SolveReport& report) {
-  if (report.status == Status::converged && report.volume_gap > kMostVolumeGap)
-    report.notes.push_back("curves and areas contradict one another on this lattice: " +
-                           std::to_string(100.0 * report.volume_gap) +
-                           " % of the energy is the error of areas");
-}
-
 /// Says which hard curves miss their targets visibly: the rows of a cell hold on average only,
 /// curves in one cell share a row, and a fixed edge or a stay too short for the lattice cannot
 /// follow.
 void note_gaps(const WarpProblem& problem, SolveReport& report) {
+  if (!report.exact && report.status == Status::converged && report.volume_gap > kMostVolumeGap)
+    report.notes.push_back("curves and areas contradict one another on this lattice: share " +
+                           std::to_string(report.volume_gap) + " of the energy");
   const bool conforming = report.curve_method == CurveMethod::conforming;
   const double notable_px =
       (conforming ? kNotableConformingGap : kNotableGap) * problem.lattice.cell_px;
@@ -397,7 +392,6 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
     solution = solve_averaged_instead(problem, chosen, std::move(solution));
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
-  if (!options.exact) note_areas(solution.report);
   solution.report.folds = find_folds(solution);
   note_folds(problem.material, solution.report);
   const kernels::Model model = problem.material.model;
