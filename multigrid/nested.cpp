@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "level_change.h"
+#include "volume_gap.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -240,6 +241,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
     if (report.status == Status::not_finite) return;
   }
+  note_areas(report);
 }
 
 template void nested_iteration(Hierarchy<float>&, const NestedOptions&, double, grid::MemoryMeter&,

@@ -13,6 +13,7 @@
 #include "corners.h"
 #include "newton_accuracy.h"
 #include "newton_judge.h"
+#include "volume_gap.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -143,28 +144,6 @@ double Newton<T>::force_norm(bool pressure) {
   return std::sqrt(sum);
 }
 
-/// See NewtonReport; at the state whose force was set last, which has −A (J* − 1 − P/kappa).
-template <class T>
-double Newton<T>::volume_gap(double enough) const {
-  const double area = double(level_.spacing) * double(level_.spacing);
-  const kernels::Plane<const T> g = level_.f.view().p, mu = level_.mu.view();
-  const kernels::Plane<const T> compliance = level_.compliance.view();
-  if (!level_.pressure || (!compliance && level_.compliance_value == T(0))) return 0.0;
-  double gap = 0.0, rest = double(level_.nx) * double(level_.ny);
-  if (!compliance) gap = kernels::dot<T>(g, g) / double(level_.compliance_value);
-  if (mu) rest = 0.0;
-  for (int j = 0; j < level_.ny && (compliance || mu); ++j)
-    for (int i = 0; i < level_.nx; ++i) {
-      if (compliance && compliance.at(i, j) > T(0))
-        gap += double(g.at(i, j)) * double(g.at(i, j)) / double(compliance.at(i, j));
-      if (mu) rest += double(mu.at(i, j));
-    }
-  gap *= 0.5 / area;
-  if (enough == 0.0 || gap <= enough * area * rest) return gap / (area * rest);
-  const kernels::EnergySums sums = kernels::energy<T>(level_.membrane(), {}, T(0));
-  return gap / (sums.elastic + sums.volume);
-}
-
 template <class T>
 double Newton<T>::line_search(double longest) {
   prepare_curve_merit();
@@ -227,7 +206,7 @@ template <class T>
 double Newton<T>::take_area_step(double gap, double enough) {
   update(1.0, true);
   norm_ = force_norm(true);
-  if (volume_gap(enough) < gap) return 1.0;
+  if (volume_gap(level_, enough) < gap) return 1.0;
   update(-1.0, true);
   norm_ = force_norm(true);
   return 0.0;
@@ -367,7 +346,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
     if (options.adaptive && accuracy.raised_by(step, report)) continue;
-    const bool ends = judge.ends_with(step, precision(), volume_gap(options.most_volume_gap));
+    const bool ends =
+        judge.ends_with(step, precision(), volume_gap(level_, options.most_volume_gap));
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor()) {
       if (corners.act() && !corners.unfolded()) report.status = Status::stalled;

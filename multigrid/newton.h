@@ -88,7 +88,6 @@ class Newton {
   double curve_work(double step) const;
   void prepare_curve_merit();
   double force_norm(bool pressure);
-  double volume_gap(double enough) const;
   double line_search(double longest);
   double take_step(double norm_before, double longest);
   double drop_momentum();

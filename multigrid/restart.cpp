@@ -2,7 +2,9 @@
 #include "restart.h"
 
 #include <algorithm>
+
 #include <limits>
+#include "volume_gap.h"
 
 #include "conforming_visits.h"
 
@@ -142,6 +144,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   report.algebraic_rms_px = done.error_rms * cell_px;
   report.algebraic_max_px = done.error_max * cell_px;
   report.volume_gap = done.volume_gap;
+  note_areas(report);
   report.discretisation_rms_px = before.discretisation_rms_px;
   report.discretisation_max_px = before.discretisation_max_px;
   report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));

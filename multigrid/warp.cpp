@@ -16,7 +16,6 @@
 
 #include "analysis.h"
 #include "conforming_notes.h"
-#include "corners.h"
 #include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
@@ -268,9 +267,6 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
 /// curves in one cell share a row, and a fixed edge or a stay too short for the lattice cannot
 /// follow.
 void note_gaps(const WarpProblem& problem, SolveReport& report) {
-  if (!report.exact && report.status == Status::converged && report.volume_gap > kMostVolumeGap)
-    report.notes.push_back("curves and areas contradict one another on this lattice: share " +
-                           std::to_string(report.volume_gap) + " of the energy");
   const bool conforming = report.curve_method == CurveMethod::conforming;
   const double notable_px =
       (conforming ? kNotableConformingGap : kNotableGap) * problem.lattice.cell_px;
