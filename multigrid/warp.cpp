@@ -16,6 +16,7 @@
 
 #include "analysis.h"
 #include "conforming_notes.h"
+#include "corners.h"
 #include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
@@ -35,8 +36,7 @@ constexpr double kMostWeight = 1e6;
 constexpr double kMostKappa = 1e4;
 // Beyond this turn of a curve (100 degrees) the harmonic start collapses.
 constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
-// Single precision is good to about a thousandth of a cell; below, and for exact rows, all is
-// double.
+// Single precision is good to about that many cells; below, and for exact rows, all is double.
 constexpr double kSinglePrecision = 1e-3;
 // A hard curve that misses its target by more than this many cells deserves a word.
 constexpr double kNotableGap = 1.0, kNotableConformingGap = 0.5;
