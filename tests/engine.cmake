@@ -33,6 +33,9 @@ endforeach()
 drumhead_test(NAME multigrid_split_test SOURCES multigrid_split_test.cpp
   LINK drumhead::multigrid LABEL unit)
 target_include_directories(multigrid_split_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
+drumhead_test(NAME multigrid_curve_patch_test SOURCES multigrid_curve_patch_test.cpp
+  LINK drumhead_kernel_oracle drumhead::multigrid LABEL unit)
+target_include_directories(multigrid_curve_patch_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
 # The private headers of multigrid/, whose levels make special cells for the kernels.
 foreach(name conforming conforming_cycle regions)
   drumhead_test(NAME multigrid_${name}_test
