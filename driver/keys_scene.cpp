@@ -149,7 +149,7 @@ const std::array kKeys = {
             "averaged: curves are met on average in each cell, an error of first order in the "
             "cell size; conforming: cells are divided along them, second order, weight inf only; "
             "automatic: conforming wherever that is known to work",
-        .fallback = "averaged",
+        .fallback = "automatic",
         .set = set_curve_method},
     Key{.name = "exact",
         .value = "",

@@ -60,7 +60,7 @@ struct Options {
   double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own
   bool exact = false;
   multigrid::Solver solver = multigrid::Solver::gcr;
-  multigrid::CurveMethod curve_method = multigrid::CurveMethod::averaged;
+  multigrid::CurveMethod curve_method = multigrid::CurveMethod::automatic;
   double tolerance_px = 0.0;  ///< 0: a tenth of the estimated discretisation error
   int threads = 0;            ///< 0: as OpenMP decides
   bool quiet = false;

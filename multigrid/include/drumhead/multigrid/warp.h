@@ -64,7 +64,7 @@ struct Solution;
 struct SolverOptions {
   Solver solver = Solver::gcr;
   /// Conforming curves are hard, not exact, and need Solver::gcr and a crpm or harmonic membrane.
-  CurveMethod curve_method = CurveMethod::averaged;
+  CurveMethod curve_method = CurveMethod::automatic;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
