@@ -163,6 +163,42 @@ void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options
   clamp = {};
 }
 
+/// What every level is asked for.
+template <class T>
+void set_options(const Level<T>& level, bool finest, bool start, const NestedOptions& options,
+                 NewtonOptions& newton) {
+  newton.linear = linear_options(level, start);
+  newton.linear.solver = options.solver;
+  newton.most_steps = start ? kStartSteps : finest ? kFinestSteps : kLevelSteps;
+  // Two steps on the coarser levels measure the contraction that the finest may then count on.
+  newton.least_steps = finest ? 1 : 2;
+  newton.share_of_change = start ? 0.0 : kShare * options.discretisation_share;
+  newton.tolerance_rms = start ? 0.01 * double(level.spacing) : 0.0;
+  newton.tolerance_max = 0.0;
+  newton.most_volume_gap = finest && !level.conforming ? kMostVolumeGap : 0.0;
+}
+
+/// What the run itself is asked for besides, once it has a state to begin with.
+template <class T>
+void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOptions& options,
+                  NewtonOptions& newton) {
+  if (finest && options.tolerance_cells > 0.0 && !options.exact) {
+    newton.most_steps = kStartSteps;
+    newton.share_of_change = 0.0;
+    newton.tolerance_rms = options.tolerance_cells;
+    // The moves of loosely solved steps say too little of pressures that are slow to settle.
+    newton.linear.content = newton.linear.reduction = kAccurate;
+    newton.expected_rates.clear();
+  }
+  if (level.solid.law.relief > T(0)) {
+    newton.most_steps = kFoldSteps;
+    newton.linear.content = newton.linear.reduction = kAccurate;
+    if (start && (!finest || options.tolerance_cells == 0.0))
+      newton.tolerance_rms = kFoldTolerance * double(level.spacing);
+    newton.onset = !finest ? kCoarseOnset : options.tolerance_cells > 0.0 ? 0.0 : kOnset;
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -182,18 +218,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     };
     Newton<T> newton(hierarchy, l, meter);
     std::optional<LevelCopy<T>> coarse;
-    newton_options.linear = linear_options(level, l == start);
-    newton_options.linear.solver = options.solver;
-    newton_options.most_steps = l > 0 ? kLevelSteps : kFinestSteps;
-    // Two steps on the coarser levels measure the contraction that the finest may then count on.
-    newton_options.least_steps = l > 0 ? 2 : 1;
-    newton_options.share_of_change = kShare * options.discretisation_share;
-    newton_options.tolerance_rms = newton_options.tolerance_max = 0.0;
-    newton_options.most_volume_gap = l == 0 && !level.conforming ? kMostVolumeGap : 0.0;
+    set_options(level, l == 0, l == start, options, newton_options);
     if (l == start) {
-      newton_options.most_steps = kStartSteps;
-      newton_options.share_of_change = 0.0;
-      newton_options.tolerance_rms = 0.01 * double(level.spacing);
       if (options.limit_kappa) options.limit_kappa(kFirstKappa);
       find_start(hierarchy, start, options, newton_options, newton, clamp);
       if (options.limit_kappa) stiffen(options, newton_options, newton, clamp);
@@ -203,21 +229,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       if (level.conforming) coarse.emplace(hierarchy[l + 1], meter);
       hierarchy.prolong_state(l);
     }
-    if (l == 0 && options.tolerance_cells > 0.0 && !options.exact) {
-      newton_options.most_steps = kStartSteps;
-      newton_options.share_of_change = 0.0;
-      newton_options.tolerance_rms = options.tolerance_cells;
-      // The moves of loosely solved steps say too little of pressures that are slow to settle.
-      newton_options.linear.content = newton_options.linear.reduction = kAccurate;
-      newton_options.expected_rates.clear();
-    }
-    if (level.solid.law.relief > T(0)) {
-      newton_options.most_steps = kFoldSteps;
-      newton_options.linear.content = newton_options.linear.reduction = kAccurate;
-      if (l == start && (l > 0 || options.tolerance_cells == 0.0))
-        newton_options.tolerance_rms = kFoldTolerance * double(level.spacing);
-      newton_options.onset = l > 0 ? kCoarseOnset : options.tolerance_cells > 0.0 ? 0.0 : kOnset;
-    }
+    set_accuracy(level, l == 0, l == start, options, newton_options);
     NewtonReport done = newton.run(newton_options, clamp, progress);
     newton_options.least_rate = hierarchy.traits().stiffness >= kStiff ? kStiffRate : 0.0;
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
