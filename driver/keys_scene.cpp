@@ -148,7 +148,7 @@ const std::array kKeys = {
         .help =
             "averaged: curves are met on average in each cell, an error of first order in the "
             "cell size; conforming: cells are divided along them, second order, weight inf only; "
-            "automatic: conforming wherever that is known to work",
+            "automatic: conforming for weight inf and kappa/mu up to 300, crpm or harmonic",
         .fallback = "automatic",
         .set = set_curve_method},
     Key{.name = "exact",

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "support/hard_cases.h"
+#include "support/scene_problem.h"
 
 namespace drumhead {
 namespace {
@@ -49,10 +50,10 @@ void print(const std::string& name, const Solution& s) {
 
 class ConformingCases : public testing::TestWithParam<int> {};
 
-// Where conforming cells do not converge (S2 180 degrees at kappa 100 on 32², S1 from 1e4 on at
-// 128²: Newton's method wanders with theta = 1), the automatic choice takes averaged rows. S5,
-// whose curves change places, is stiff at its tips: averaged rows end with `limit` at 32² from
-// kappa 10 on, after 60 steps.
+// Where conforming cells do not converge (S2 180 degrees at kappa 100 on 32²: Newton's method
+// wanders with theta = 1), the automatic choice takes averaged rows. From 1e4 on it takes them at
+// once. S5, whose curves change places, is stiff at its tips: averaged rows end with `limit` at 32²
+// from kappa 10 on, after 60 steps.
 TEST_P(ConformingCases, EndAsTrulyAsAveragedRowsInAsManyStepsAndAFew) {
   const int n = GetParam();
   int others = 0;
@@ -68,8 +69,9 @@ TEST_P(ConformingCases, EndAsTrulyAsAveragedRowsInAsManyStepsAndAFew) {
     expect_finite(conforming);
     // Chords miss an arc of radius r by h/8r cells.
     EXPECT_LT(gap(conforming), n == 32 ? 0.12 : 0.04) << c.name;
+    const bool stiff = grid::largest_stiffness(c.problem.material) > 300.0;
     if (conforming.report.status == Status::converged) {
-      EXPECT_LE(steps(conforming), steps(averaged) + 12) << c.name;
+      EXPECT_LE(steps(conforming), steps(averaged) + (stiff ? 16 : 12)) << c.name;
       continue;
     }
     ++others;
@@ -77,6 +79,7 @@ TEST_P(ConformingCases, EndAsTrulyAsAveragedRowsInAsManyStepsAndAFew) {
         multigrid::solve(c.problem, {.curve_method = CurveMethod::automatic});
     EXPECT_EQ(automatic.report.status, averaged.report.status) << c.name;
     EXPECT_EQ(automatic.report.curve_method, CurveMethod::averaged) << c.name;
+    if (stiff) continue;  // not tried
     ASSERT_FALSE(automatic.report.notes.empty()) << c.name;
     EXPECT_TRUE(std::ranges::any_of(automatic.report.notes, [](const std::string& note) {
       return note.find("conforming cells ended with") != std::string::npos;
@@ -86,6 +89,24 @@ TEST_P(ConformingCases, EndAsTrulyAsAveragedRowsInAsManyStepsAndAFew) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lattices, ConformingCases, testing::Values(32, 128));
+
+CurveMethod taken(const multigrid::WarpProblem& problem, multigrid::SolverOptions options = {}) {
+  return multigrid::solve(problem, options).report.curve_method;
+}
+
+TEST(AutomaticCurves, AreConformingForHardCurvesOfUsualMembranesAndAveragedElse) {
+  const multigrid::WarpProblem usual = scenes::problem(scenes::shift(), 32, 10.0);
+  EXPECT_EQ(taken(usual), CurveMethod::conforming);
+  EXPECT_EQ(taken(usual, {.exact = true}), CurveMethod::averaged);
+  EXPECT_EQ(taken(usual, {.solver = multigrid::Solver::minres}), CurveMethod::averaged);
+  EXPECT_EQ(taken(scenes::problem(scenes::shift(), 32, 1e4)), CurveMethod::averaged);
+  multigrid::WarpProblem other = usual;
+  other.material.model = kernels::Model::arap;
+  EXPECT_EQ(taken(other), CurveMethod::averaged);
+  other = usual;
+  other.curves.front().weight = 100.0;
+  EXPECT_EQ(taken(other), CurveMethod::averaged);
+}
 
 }  // namespace
 }  // namespace drumhead

@@ -16,7 +16,7 @@ struct HardCase {
   multigrid::WarpProblem problem;
   multigrid::Status status = multigrid::Status::converged;
   int most_steps = 0;  ///< Newton's, on the finest lattice; about twice what was found
-  /// Least energy that was found on 32² cells with exact rows, 0: unknown. A finer lattice has less.
+  /// Least energy found on 32² cells with exact rows, 0: unknown. A finer lattice has less.
   double energy_at_32 = 0.0;
   double most_gap_px = std::numeric_limits<double>::infinity();  ///< of any curve
 };

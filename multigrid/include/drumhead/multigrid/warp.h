@@ -49,8 +49,8 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
-  /// Conforming where that is possible and known to converge, by model, solver, kappa and curves,
-  /// else averaged; averaged, too, where conforming cells did not converge after all.
+  /// Conforming where that is possible (crpm or harmonic, Solver::gcr, hard curves, not exact) and
+  /// kappa/mu is at most 300, else averaged; averaged, too, where conforming cells do not converge.
   automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
   conforming  ///< cells divided along the curves (grid/conforming.h): second order, hard curves
