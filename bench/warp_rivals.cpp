@@ -23,7 +23,7 @@ struct Rival {
 };
 
 #if DRUMHEAD_BENCH_OPENCV_SHAPE
-/// In single precision: it may miss its own points by some pixels.
+/// In single precision: it may miss its own points by some pixels (12 were seen).
 PointWarp opencv_spline(const PointPairs& points) {
   const auto row = [](const std::vector<Complex>& from) {
     std::vector<cv::Point2f> to;
@@ -46,7 +46,7 @@ std::vector<Rival> rivals() {
   return {
     {"thin-plate spline", thin_plate_spline},
 #if DRUMHEAD_BENCH_OPENCV_SHAPE
-        {"OpenCV thin-plate spline", opencv_spline, 10.0},
+        {"OpenCV thin-plate spline", opencv_spline, 30.0},
 #endif
         {"moving least squares, rigid",
          [](const PointPairs& points) { return moving_least_squares(points, Fit::rigid); }},
