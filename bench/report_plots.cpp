@@ -18,11 +18,11 @@ struct Peer {
   int look;
 };
 constexpr Peer kPeers[] = {
-    {"paper, PARDISO", 7},   {"paper", 6},        {"triangle mesh", 4}, {"conforming", 0},
-    {"minres-multigrid", 2}, {"minres", 3},       {"coloured", 7},      {"kaczmarz", 6},
-    {"averaged", 1},         {"gcr", 1},          {"MUMPS", 2},         {"UMFPACK", 3},
-    {"CHOLMOD", 3},          {"PARDISO", 7},      {"Boomer", 7},        {"AMG", 5},
-    {"thin-plate", 4},       {"moving least", 5}, {"Shepard", 7}};
+    {"paper, PARDISO", 7},    {"paper", 6},        {"triangle mesh", 4}, {"conforming", 0},
+    {"minres-multigrid", 10}, {"minres", 9},       {"coloured", 11},     {"kaczmarz", 8},
+    {"averaged", 1},          {"gcr", 1},          {"MUMPS", 2},         {"UMFPACK", 3},
+    {"CHOLMOD", 3},           {"PARDISO", 7},      {"Boomer", 12},       {"AMG", 5},
+    {"thin-plate", 4},        {"moving least", 5}, {"Shepard", 7}};
 
 int look_of(const std::string& name) {
   for (const Peer& peer : kPeers)

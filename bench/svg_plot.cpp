@@ -13,12 +13,15 @@ constexpr double kWidth = 790, kHeight = 400;
 constexpr double kLeft = 66, kRight = 280, kTop = 36, kBottom = 50;
 constexpr double kMark = 4.0, kLine = 18.0;
 
-// Okabe and Ito's colours, which people with any colour sense tell apart, darker on white and
+constexpr int kLooks = 13;
+// After Okabe and Ito's colours, which people with any colour sense tell apart, darker on white and
 // lighter on black.
-constexpr const char* kLight[] = {"#0072b2", "#3a9bd9", "#c24e00", "#b97a00",
-                                  "#007a5a", "#b0508a", "#6b7178", "#8a6d3b"};
-constexpr const char* kDark[] = {"#56aee8", "#9fd3f7", "#ff8a4a", "#f0c04a",
-                                 "#3fc79a", "#e79cc8", "#a3a9b0", "#c8ad7f"};
+constexpr const char* kLight[kLooks] = {"#0072b2", "#3a9bd9", "#c24e00", "#b97a00", "#007a5a",
+                                        "#b0508a", "#6b7178", "#8a6d3b", "#5b4bb5", "#a11d33",
+                                        "#4d7a00", "#00808a", "#303030"};
+constexpr const char* kDark[kLooks] = {"#56aee8", "#9fd3f7", "#ff8a4a", "#f0c04a", "#3fc79a",
+                                       "#e79cc8", "#a3a9b0", "#c8ad7f", "#a79cf0", "#ff7b8e",
+                                       "#a4cf52", "#4fd0da", "#e0e0e0"};
 
 template <class... Numbers>
 std::string format(const char* text, Numbers... numbers) {
@@ -98,8 +101,8 @@ std::string mark(int look, double x, double y, const std::string& tip) {
       shape =
           format("<path d=\"M%.1f %.1fl%g %gh%gz\"", x, y - 1.1 * r, 1.2 * r, 2.0 * r, -2.4 * r);
   }
-  return shape + format(" class=\"mark s%d%s\">", look, look >= 4 ? " hollow" : "") + "<title>" +
-         escaped(tip) + "</title>" + (look % 4 == 0 ? "</circle>" : "</path>");
+  return shape + format(" class=\"mark s%d%s\">", look, look / 4 % 2 == 1 ? " hollow" : "") +
+         "<title>" + escaped(tip) + "</title>" + (look % 4 == 0 ? "</circle>" : "</path>");
 }
 
 const char* dashes(PlotSeries::Line line) {
@@ -225,7 +228,8 @@ class Drawing {
 
 std::string colours(const char* const* palette) {
   std::string css;
-  for (int look = 0; look < 8; ++look) css += format(".plot .s%d{--c:%s}", look, palette[look]);
+  for (int look = 0; look < kLooks; ++look)
+    css += format(".plot .s%d{--c:%s}", look, palette[look]);
   return css;
 }
 

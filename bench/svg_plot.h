@@ -16,7 +16,7 @@ struct PlotPoint {
 /// A line, or (solid false) marks alone.
 struct PlotSeries {
   std::string name;
-  int look = 0;  ///< colour and mark, 0…7; the same look is the same peer in every plot
+  int look = 0;  ///< colour and mark, 0…12; the same look is the same peer in every plot
   enum class Line { solid, dashed, dotted, none } line = Line::solid;
   std::vector<PlotPoint> points;
 };
