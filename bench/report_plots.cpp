@@ -43,6 +43,7 @@ std::vector<PlotSeries> lines_of(const Rows& rows, const Name& name, const Numbe
     for (const Json& row : rows)
       if (name(row) == line && std::isfinite(x(row)) && std::isfinite(y(row)))
         series.points.push_back({x(row), y(row), label ? label(row) : ""});
+    std::ranges::stable_sort(series.points, {}, &PlotPoint::x);
     if (!series.points.empty()) all.push_back(std::move(series));
   }
   return all;
