@@ -16,11 +16,12 @@
 
 #include "analysis.h"
 #include "conforming_notes.h"
-#include "corners.h"
 #include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
 #include "restart.h"
+#include "scene.h"
+#include "solve_notes.h"
 #include "split_cells.h"
 
 namespace drumhead::multigrid {
@@ -31,15 +32,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// On the default path d and kappa are capped where a further increase changes nothing that is seen.
+// On the default path d is capped where a further increase changes nothing that is seen.
 constexpr double kMostWeight = 1e6;
-constexpr double kMostKappa = 1e4;
 // Beyond this turn of a curve (100 degrees) the harmonic start collapses.
 constexpr double kLoadPathTurn = 100.0 / 180.0 * std::numbers::pi;
 // Single precision is good to about that many cells; below, and for exact rows, all is double.
 constexpr double kSinglePrecision = 1e-3;
-// A hard curve that misses its target by more than this many cells deserves a word.
-constexpr double kNotableGap = 1.0, kNotableConformingGap = 0.5;
 constexpr double kJump = 0.005;  // on q: of the default path and of its preconditioner
 
 void check(const WarpProblem& problem, const SolverOptions& options) {
@@ -69,67 +67,6 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 0");
-}
-
-/// The material the default path solves: kappa capped, with a note.
-grid::Material capped(const grid::Material& material, SolveReport& report) {
-  grid::Material out = material;
-  if (kernels::isotropic(material.model)) return out;
-  bool changed = out.kappa > kMostKappa;
-  out.kappa = std::min(out.kappa, kMostKappa);
-  for (float& kappa : out.kappa_cells) {
-    changed = changed || kappa > float(kMostKappa);
-    kappa = std::min(kappa, float(kMostKappa));
-  }
-  if (changed)
-    report.notes.push_back(
-        "kappa above 1e4 mu was taken as 1e4 mu; exact constraints take it as it is");
-  return out;
-}
-
-/// In units of the scene's mu: a curve must be hard where the membrane is stiffest, too.
-double largest_mu(const grid::Material& material) {
-  if (material.mu_cells.empty()) return 1.0;
-  return double(*std::ranges::max_element(material.mu_cells));
-}
-
-double largest_kappa(const grid::Material& material) {
-  if (material.kappa_cells.empty()) return material.kappa;
-  return double(*std::ranges::max_element(material.kappa_cells));
-}
-
-bool has_pressure(const grid::Material& material) {
-  return material.model == kernels::Model::crpm && largest_kappa(material) > 0.0;
-}
-
-/// Whether a curve ends within the lattice: solutions are singular there.
-bool has_tips(const WarpProblem& problem) {
-  const grid::Lattice& lattice = problem.lattice;
-  const grid::Point low = lattice.origin_px, high = lattice.rest_px(lattice.nx, lattice.ny);
-  const double near = lattice.cell_px / 4.0;
-  auto inside = [&](grid::Point p) {
-    return std::min({p.x - low.x, p.y - low.y, high.x - p.x, high.y - p.y}) > near;
-  };
-  return std::ranges::any_of(problem.curves, [&](const grid::CurvePair& curve) {
-    const grid::Point first = curve.source.front().control[0],
-                      last = curve.source.back().control[3];
-    return grid::length(last - first) > 1e-3 * near && (inside(first) || inside(last));
-  });
-}
-
-/// Extent of the smallest source curve, in cells.
-double smallest_feature(const WarpProblem& problem) {
-  double smallest = std::max(problem.lattice.nx, problem.lattice.ny);
-  for (const grid::CurvePair& curve : problem.curves) {
-    grid::Point low = curve.source.front().control[0], high = low;
-    for (const grid::CubicBezier& segment : curve.source)
-      for (const grid::Point& p : segment.control) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      }
-    smallest = std::min(smallest, grid::length(high - low) / problem.lattice.cell_px);
-  }
-  return smallest;
 }
 
 template <class T>
@@ -262,81 +199,6 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.work_unit_seconds = time_work_unit(hierarchy);
   report.work_units = (report.cut_seconds + report.solve_seconds) / report.work_unit_seconds;
 }
-
-/// Says which hard curves miss their targets visibly: the rows of a cell hold on average only,
-/// curves in one cell share a row, and a fixed edge or a stay too short for the lattice cannot
-/// follow.
-void note_gaps(const WarpProblem& problem, SolveReport& report) {
-  const bool conforming = report.curve_method == CurveMethod::conforming;
-  const double notable_px =
-      (conforming ? kNotableConformingGap : kNotableGap) * problem.lattice.cell_px;
-  for (std::size_t n = 0; n < report.curves.size(); ++n) {
-    const CurveReport& curve = report.curves[n];
-    if (!std::isinf(problem.curves[n].weight)) continue;
-    if (curve.gap_max_px > notable_px)
-      report.notes.push_back("curve '" + curve.name + "' misses its target by up to " +
-                             std::to_string(curve.gap_max_px) + " px at (" +
-                             std::to_string(curve.worst_px.x) + ", " +
-                             std::to_string(curve.worst_px.y) + ") px");
-  }
-}
-
-/// What folds mean where a model rules them out (Eq. 8 as an inequality) or invites them.
-void note_folds(const grid::Material& material, SolveReport& report) {
-  const FoldReport& folds = report.folds;
-  const bool free = material.model == kernels::Model::arap && material.kappa >= kAsInequality;
-  const bool collapses = material.model == kernels::Model::stvk;
-  if (folds.folded_cells == 0 || (!free && !collapses)) return;
-  const grid::Point place = folds.places_px.front();
-  report.notes.push_back(
-      std::string(free ? "no state without folds was found: "
-                       : "stvk yields where it is pressed below 1/√3 of its length: ") +
-      std::to_string(folds.folded_cells) + " cells are folded, one at (" + std::to_string(place.x) +
-      ", " + std::to_string(place.y) + ") px");
-}
-
-}  // namespace
-
-const char* name(Solver solver) {
-  switch (solver) {
-    case Solver::gcr:
-      return "gcr";
-    case Solver::kaczmarz:
-      return "kaczmarz";
-    case Solver::coloured_kaczmarz:
-      return "coloured-kaczmarz";
-    case Solver::minres:
-      return "minres";
-    case Solver::minres_multigrid:
-      return "minres-multigrid";
-  }
-  return "";
-}
-
-std::optional<Solver> solver_named(std::string_view wanted) {
-  for (const Solver solver : {Solver::gcr, Solver::kaczmarz, Solver::coloured_kaczmarz,
-                              Solver::minres, Solver::minres_multigrid})
-    if (wanted == name(solver)) return solver;
-  return std::nullopt;
-}
-
-const char* name(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "converged";
-    case Status::stalled:
-      return "stalled";
-    case Status::infeasible:
-      return "infeasible";
-    case Status::limit:
-      return "limit";
-    case Status::not_finite:
-      return "not_finite";
-  }
-  return "";
-}
-
-namespace {
 
 /// By `options.curve_method`, which is not automatic.
 Solution solve_by(const WarpProblem& problem, const SolverOptions& options) {
