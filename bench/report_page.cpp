@@ -2,8 +2,6 @@
 #include "report_page.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "html.h"
 #include "report_losses.h"
 #include "report_page_template.h"
 #include "report_plots.h"
@@ -20,21 +19,7 @@
 namespace drumhead::bench {
 namespace {
 
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-    std::uint32_t group = 0;
-    for (std::size_t b = 0; b < 3; ++b)
-      group = group << 8 | (b < count ? std::uint8_t(bytes[k + b]) : 0u);
-    for (std::size_t d = 0; d < 4; ++d)
-      text += d <= count ? kDigits[group >> (18 - 6 * d) & 63] : '=';
-  }
-  return text;
-}
+using html::data_uri, html::escaped;
 
 std::string contents(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -66,9 +51,9 @@ std::string gallery(const std::string& folder) {
       const std::string stem = file.stem().string();
       std::string kind = stem.find('-') == std::string::npos ? "" : stem.substr(stem.find('-') + 1);
       std::ranges::replace(kind, '-', ' ');
-      html += "<figure><img loading=\"lazy\" alt=\"" + escaped(scene + ", " + kind) +
-              "\" src=\"data:image/png;base64," + base64(contents(file)) + "\"><figcaption>" +
-              escaped(kind) + "</figcaption></figure>\n";
+      html += "<figure><img loading=\"lazy\" alt=\"" + escaped(scene + ", " + kind) + "\" src=\"" +
+              data_uri(contents(file)) + "\"><figcaption>" + escaped(kind) +
+              "</figcaption></figure>\n";
     }
     html += "</div>\n";
   }
@@ -140,17 +125,6 @@ std::string runs(const Measurements& measured) {
   return html + "</tbody></table></div>\n";
 }
 
-/// The template with each {{key}} replaced.
-std::string filled(std::string page, const std::map<std::string, std::string>& parts) {
-  std::string html;
-  for (std::size_t at = 0;;) {
-    const std::size_t open = page.find("{{", at), close = page.find("}}", open);
-    if (open == std::string::npos || close == std::string::npos) return html + page.substr(at);
-    html += page.substr(at, open - at) + parts.at(page.substr(open + 2, close - open - 2));
-    at = close + 2;
-  }
-}
-
 }  // namespace
 
 std::string page_of(const Measurements& measured, const std::string& pictures) {
@@ -173,7 +147,7 @@ std::string page_of(const Measurements& measured, const std::string& pictures) {
       parts["sheet_" + sheet.id] = html_with_title(sheet);
   }
   parts["other_sheets"] = others;
-  return filled(kReportPageTemplate, parts);
+  return html::filled(kReportPageTemplate, parts);
 }
 
 }  // namespace drumhead::bench

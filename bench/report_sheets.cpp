@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "html.h"
 #include "report_tables.h"
-#include "svg_plot.h"
 
 namespace drumhead::bench {
 namespace {
@@ -64,12 +64,12 @@ std::string html_of(const Sheet& sheet) {
   std::string html = "<div class=\"wide\"><table id=\"" + sheet.id + "\"><thead><tr>";
   const auto set = [&](std::size_t k) { return sheet.numeric[k] ? " class=\"number\">" : ">"; };
   for (std::size_t k = 0; k < sheet.head.size(); ++k)
-    html += std::string("<th") + set(k) + escaped(sheet.head[k]) + "</th>";
+    html += std::string("<th") + set(k) + html::escaped(sheet.head[k]) + "</th>";
   html += "</tr></thead>\n<tbody>";
   for (const auto& row : sheet.cells) {
     html += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      html += std::string("<td") + set(k) + escaped(row[k]) + "</td>";
+      html += std::string("<td") + set(k) + html::escaped(row[k]) + "</td>";
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "html.h"
+
 namespace drumhead::bench {
 namespace {
 
@@ -102,7 +104,7 @@ std::string mark(int look, double x, double y, const std::string& tip) {
           format("<path d=\"M%.1f %.1fl%g %gh%gz\"", x, y - 1.1 * r, 1.2 * r, 2.0 * r, -2.4 * r);
   }
   return shape + format(" class=\"mark s%d%s\">", look, look / 4 % 2 == 1 ? " hollow" : "") +
-         "<title>" + escaped(tip) + "</title>" + (look % 4 == 0 ? "</circle>" : "</path>");
+         "<title>" + html::escaped(tip) + "</title>" + (look % 4 == 0 ? "</circle>" : "</path>");
 }
 
 const char* dashes(PlotSeries::Line line) {
@@ -137,7 +139,7 @@ class Drawing {
   }
 
   std::string body() {
-    add("<title>" + escaped(plot_.title) + "</title>");
+    add("<title>" + html::escaped(plot_.title) + "</title>");
     text(kLeft, 18, "start", "title", plot_.title);
     add_axes();
     for (const PlotSeries& series : plot_.series) add_series(series);
@@ -149,7 +151,7 @@ class Drawing {
   void add(const std::string& part) { text_ += part + "\n"; }
   void text(double x, double y, const char* anchor, const char* kind, const std::string& words) {
     add(format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" class=\"%s\">", x, y, anchor, kind) +
-        escaped(words) + "</text>");
+        html::escaped(words) + "</text>");
   }
   void line(const char* kind, double x1, double y1, double x2, double y2) {
     add(format("<line class=\"%s\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>", kind, x1, y1,
@@ -177,7 +179,7 @@ class Drawing {
     add(format("<text transform=\"translate(14 %.1f) rotate(-90)\" text-anchor=\"middle\" "
                "class=\"axis\">",
                middle) +
-        escaped(plot_.y_name) + "</text>");
+        html::escaped(plot_.y_name) + "</text>");
   }
 
   void add_series(const PlotSeries& series) {
@@ -200,7 +202,7 @@ class Drawing {
                "\n";
       if (!point.label.empty())
         marks += format("<text x=\"%.1f\" y=\"%.1f\" class=\"label\">", x + 6, y - 5) +
-                 escaped(point.label) + "</text>\n";
+                 html::escaped(point.label) + "</text>\n";
     }
     if (series.line != PlotSeries::Line::none)
       add(format("<path class=\"line s%d%s\" d=\"", series.look, dashes(series.line)) + path +
@@ -265,32 +267,6 @@ std::string plot_style() {
          ".plot .dashed{stroke-dasharray:7 4}.plot .dotted{stroke-dasharray:2 4}"
          ".plot .mark{fill:var(--c);stroke:var(--c);stroke-width:1.5}"
          ".plot .hollow{fill:var(--plot-paper)}";
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
 }
 
 }  // namespace drumhead::bench

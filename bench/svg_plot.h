@@ -36,7 +36,4 @@ std::string svg_file_of(const SvgPlot& plot);
 /// CSS of all plots.
 std::string plot_style();
 
-/// Text that may stand in HTML and SVG, between tags and in attributes.
-std::string escaped(const std::string& text);
-
 }  // namespace drumhead::bench

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "canvas.h"
+#include "html.h"
 #include "page_plot.h"
 #include "page_template.h"
 
@@ -17,26 +18,7 @@ namespace drumhead::driver {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-    std::uint32_t group = 0;
-    for (std::size_t b = 0; b < 3; ++b) {
-      group = group << 8 | (b < count ? std::uint8_t(bytes[k + b]) : 0u);
-    }
-    for (std::size_t d = 0; d < 4; ++d) {
-      text += d <= count ? kDigits[group >> (18 - 6 * d) & 63] : '=';
-    }
-  }
-  return text;
-}
-
-std::string data_uri(const std::string& png) { return "data:image/png;base64," + base64(png); }
+using html::data_uri, html::escaped, html::filled;
 
 /// null, which stands for what is not finite, as a dash.
 std::string number(const Json& value, const char* unit = "") {
@@ -195,18 +177,6 @@ std::string for_script(const std::string& json) {
       safe += c;
   }
   return safe;
-}
-
-std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
-  std::string page;
-  for (;;) {
-    const std::size_t open = text.find("{{");
-    page += text.substr(0, open);
-    if (open == std::string_view::npos) return page;
-    const std::size_t close = text.find("}}", open);
-    page += values.at(text.substr(open + 2, close - open - 2));
-    text.remove_prefix(close + 2);
-  }
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "html.h"
+
 namespace drumhead::driver {
 namespace {
 
@@ -42,8 +44,8 @@ class Drawing {
 
   std::string svg() {
     text_ = format("<svg viewBox=\"0 0 %g %g\" role=\"img\">", kWidth, kHeight);
-    add("<title>" + escaped(plot_.title) + "</title>");
-    add(format("<text x=\"4\" y=\"14\">") + escaped(plot_.title) + "</text>");
+    add("<title>" + html::escaped(plot_.title) + "</title>");
+    add(format("<text x=\"4\" y=\"14\">") + html::escaped(plot_.title) + "</text>");
     add_bands();
     add_decades();
     if (shown(plot_.bound)) {
@@ -52,7 +54,7 @@ class Drawing {
                  kWidth - kRight, y, y));
       add(format("<text class=\"bound\" x=\"%g\" y=\"%.1f\" text-anchor=\"end\">",
                  kWidth - kRight - 2, y - 4) +
-          escaped(plot_.bound_name) + "</text>");
+          html::escaped(plot_.bound_name) + "</text>");
     }
     add_steps();
     return text_ + "</svg>";
@@ -84,7 +86,7 @@ class Drawing {
                    kTop - 18, width, kHeight - kTop - kBottom + 18));
       }
       add(format("<text x=\"%.1f\" y=\"%g\" text-anchor=\"middle\">", left + width / 2, kTop - 6) +
-          escaped(level.name) + "</text>");
+          html::escaped(level.name) + "</text>");
       first += level.steps.size();
     }
   }
@@ -113,7 +115,7 @@ class Drawing {
                  format("<title>%.3g</title></circle>\n", step.value);
         if (step.label.empty()) continue;
         marks += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", x, y - 7) +
-                 escaped(step.label) + "</text>\n";
+                 html::escaped(step.label) + "</text>\n";
       }
       add("<polyline class=\"line\" points=\"" + line + "\"/>");
       text_ += marks;
@@ -129,31 +131,5 @@ class Drawing {
 }  // namespace
 
 std::string svg_of(const Plot& plot) { return Drawing(plot).svg(); }
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 }  // namespace drumhead::driver

@@ -28,7 +28,4 @@ struct Plot {
 /// Texts are escaped here.
 std::string svg_of(const Plot& plot);
 
-/// &, <, > and quotes as character references.
-std::string escaped(const std::string& text);
-
 }  // namespace drumhead::driver
