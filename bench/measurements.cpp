@@ -79,6 +79,13 @@ Measurements read_measurements(const std::vector<std::string>& files) {
   return all;
 }
 
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read");
+  return bytes;
+}
+
 std::string text(const Json& row, const char* key) {
   const auto found = row.find(key);
   return found == row.end() || !found->is_string() ? std::string() : found->get<std::string>();
@@ -97,6 +104,11 @@ Rows where(const Rows& rows, const std::function<bool(const Json&)>& holds) {
   return some;
 }
 
+std::string with_threads(const Json& row) {
+  const int threads = int(value(row, "threads"));
+  return text(row, "method") + ", " + std::to_string(threads) +
+         (threads == 1 ? " thread" : " threads");
+}
 bool is_ours(const Json& row) { return text(row, "method").starts_with("drumhead"); }
 
 std::vector<std::string> distinct(const Rows& rows,

@@ -2,6 +2,7 @@
 #pragma once
 // What the benchmarks left (results.h), read back: rows of all files together, and by whom, where
 // and when they were measured.
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,12 +30,17 @@ struct Measurements {
 /// Reads all files. Throws std::runtime_error that names the file and what is wrong in it.
 Measurements read_measurements(const std::vector<std::string>& files);
 
+/// A file's bytes. Throws std::runtime_error that names it where it cannot be read or is empty.
+std::string contents(const std::filesystem::path& file);
+
 /// A row's text, "" if there is none.
 std::string text(const Json& row, const char* key);
 /// A row's number, "inf" understood; NaN if there is none.
 double value(const Json& row, const char* key);
 /// Rows of which `true` holds.
 Rows where(const Rows& rows, const std::function<bool(const Json&)>& holds);
+/// The row's method and its number of threads.
+std::string with_threads(const Json& row);
 /// Whether the row's method is drumhead's own.
 bool is_ours(const Json& row);
 

@@ -2,7 +2,7 @@
 // Makes one page, or Markdown tables, of what the benchmarks left as JSON (results.h):
 //   report -o PAGE.html [--pictures FOLDER] [--plots FOLDER] FILE.json…
 //   report --markdown FILE.json…          every table
-//   report --key-table FILE.json…         the README's
+//   report --readme README.md FILE.json…  the README with its tables made anew
 // --pictures: PNG files that the page shall show. --plots: where the README's plots go, as SVG.
 // Exit code 2: an argument, or a file that is not as it should be (named); nothing is written.
 #include <cstdio>
@@ -13,6 +13,7 @@
 
 #include "report_page.h"
 #include "report_plots.h"
+#include "report_readme.h"
 #include "report_sheets.h"
 #include "report_summary.h"
 
@@ -20,8 +21,8 @@ namespace drumhead::bench {
 namespace {
 
 struct Arguments {
-  bool markdown = false, key_table = false;
-  std::string page, pictures, plots;
+  bool markdown = false;
+  std::string page, readme, pictures, plots;
   std::vector<std::string> files;
 };
 
@@ -30,6 +31,7 @@ Arguments parsed(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
     std::string* into = word == "-o"           ? &arguments.page
+                        : word == "--readme"   ? &arguments.readme
                         : word == "--pictures" ? &arguments.pictures
                         : word == "--plots"    ? &arguments.plots
                                                : nullptr;
@@ -37,16 +39,15 @@ Arguments parsed(int argc, char** argv) {
       *into = argv[++k];
     else if (word == "--markdown")
       arguments.markdown = true;
-    else if (word == "--key-table")
-      arguments.key_table = true;
     else if (!into && !word.starts_with("-"))
       arguments.files.emplace_back(word);
     else
       throw std::runtime_error(std::string(word) + ": not understood, or without its value");
   }
   if (arguments.files.empty() ||
-      arguments.markdown + arguments.key_table + !arguments.page.empty() != 1)
-    throw std::runtime_error("wanted: FILE.json… and one of -o PAGE.html, --markdown, --key-table");
+      arguments.markdown + !arguments.readme.empty() + !arguments.page.empty() != 1)
+    throw std::runtime_error(
+        "wanted: FILE.json… and one of -o PAGE.html, --markdown, --readme README.md");
   return arguments;
 }
 
@@ -74,8 +75,8 @@ void run(const Arguments& arguments) {
     print_markdown(measured);
     return;
   }
-  if (arguments.key_table) {
-    std::printf("%s\n%s\n", key_table(measured).c_str(), machine(measured).c_str());
+  if (!arguments.readme.empty()) {
+    write(arguments.readme, with_tables(contents(arguments.readme), measured));
     return;
   }
   const std::string page = page_of(measured, arguments.pictures);

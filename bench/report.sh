@@ -3,7 +3,7 @@
 # or with sudo: installs what is missing, builds, runs the programs of bench/ one after another, writes
 #     build/report/index.html     the page: plots, tables, pictures, in one file
 #     bench/tables.md             all tables
-#     bench/pictures/*.svg        the README's plots; its table is put into README.md itself
+#     bench/pictures/*.svg        the README's plots; its tables are put into README.md itself
 #   sh bench/report.sh              some 20 minutes on two quiet cores
 #   sh bench/report.sh --large      also solves at 1600² and 3200²
 #   sh bench/report.sh --direct N   also direct solvers on the sponge at 400² (N 400) or up to 800² (N 800;
@@ -123,15 +123,7 @@ $report -o build/report/index.html --plots bench/pictures --pictures driver/exam
   echo
   $report --markdown "$@"
 } >bench/tables.md
-# The README's table lies between two marks.
-$report --key-table "$@" >build/report/key-table.md
-awk '/^<!-- end of the table -->/ { inside = 0 }
-     !inside
-     /^<!-- made by bench\/report.sh -->/ {
-       inside = 1
-       while ((getline line < "build/report/key-table.md") > 0) print line
-     }' README.md >build/report/README.md
-cat build/report/README.md >README.md
+$report --readme README.md "$@"
 echo
 echo "$PWD/build/report/index.html"
 echo "bench/tables.md bench/pictures README.md"

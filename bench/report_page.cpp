@@ -21,13 +21,6 @@ namespace {
 
 using html::data_uri, html::escaped;
 
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read");
-  return bytes;
-}
-
 /// Pictures side by side by what stands before the first "-" of their names: face-before,
 /// face-after.
 std::string gallery(const std::string& folder) {

@@ -54,26 +54,22 @@ bool solved(const Json& row) {
   return status.empty() || status == "converged";
 }
 
-std::string thread_name(const Json& row) {
-  return text(row, "method") + ", " + figure(value(row, "threads"));
-}
-
 /// Solves on more than one thread are dashed.
 void dash_threads(std::vector<PlotSeries>& lines) {
   for (PlotSeries& line : lines)
-    if (!line.name.ends_with(", 1")) line.line = Line::dashed;
+    if (!line.name.ends_with(", 1 thread")) line.line = Line::dashed;
 }
 
 void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
   const Rows rows = where(measured.table("table1"), solved);
   ReportPlot time{"speed",
                   "table1",
-                  "Behind each name the number of threads. The paper's curves are from its own "
-                  "machine (six cores, 2014).",
+                  "The paper's curves are from its own machine (six cores, 2014).",
                   {.title = "Whole solve of the sponge",
                    .x_name = "cells across the picture",
                    .y_name = "seconds",
-                   .series = lines_of(rows, thread_name, number_of("n"), number_of("seconds"))},
+                   .x_at_points = true,
+                   .series = lines_of(rows, with_threads, number_of("n"), number_of("seconds"))},
                   true};
   dash_threads(time.plot.series);
   all.push_back(std::move(time));
@@ -84,7 +80,8 @@ void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
                    "and its lattice's) that it solves for.",
                    {.title = "Memory per node, the sponge",
                     .x_name = "cells across the picture",
-                    .y_name = "bytes per node"}};
+                    .y_name = "bytes per node",
+                    .x_at_points = true}};
   const auto one = [](const Json& row) { return value(row, "threads") == 1; };
   bytes.plot.series =
       lines_of(where(rows, one), Name([](const Json& r) { return text(r, "method"); }),
@@ -106,7 +103,8 @@ void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
                   .x_name = "cells across the picture",
                   .y_name = "times faster than one thread",
                   .log_y = false,
-                  .series = lines_of(where(rows, several), thread_name, number_of("n"), gain)}});
+                  .x_at_points = true,
+                  .series = lines_of(where(rows, several), with_threads, number_of("n"), gain)}});
 }
 
 void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
@@ -167,7 +165,8 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
                    "One Newton system, hard curves.",
                    {.title = "Work for a factor of ten over lattices, gcr",
                     .x_name = "cells across the picture",
-                    .y_name = "work units per digit"}};
+                    .y_name = "work units per digit",
+                    .x_at_points = true}};
   sizes.plot.series = lines_of(where(gcr, hard), scene_and_kappa, number_of("n"), rate);
   std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 3; });
   for (std::size_t k = 0; k < sizes.plot.series.size(); ++k) sizes.plot.series[k].look = int(k) % 8;

@@ -114,31 +114,4 @@ std::string machine(const Measurements& measured) {
   return words;
 }
 
-std::string key_table(const Measurements& measured) {
-  const Rows rows = measured.table("table1");
-  constexpr int kSizes[] = {50, 100, 200, 400, 800};
-  std::string lines = "| seconds (MB) |", rule = "|---|";
-  for (const int n : kSizes) {
-    lines += " " + std::to_string(n) + "² |";
-    rule += "---:|";
-  }
-  lines += "\n" + rule + "\n";
-  const auto name = [](const Json& row) {
-    return text(row, "method") + ", " + figure(value(row, "threads")) +
-           (value(row, "threads") == 1 ? " thread" : " threads");
-  };
-  for (const std::string& line : distinct(rows, name)) {
-    lines += "| " + line + " |";
-    for (const int n : kSizes) {
-      const auto found = std::ranges::find_if(
-          rows, [&](const Json& row) { return name(row) == line && value(row, "n") == n; });
-      lines += found == rows.end() ? " |"
-                                   : " " + figure(value(*found, "seconds")) + " (" +
-                                         figure(1e-6 * value(*found, "bytes")) + ") |";
-    }
-    lines += "\n";
-  }
-  return lines;
-}
-
 }  // namespace drumhead::bench

@@ -13,7 +13,4 @@ std::vector<std::string> summary(const Measurements& measured);
 /// Processor, commit and dates of the runs, for the head of the page and of bench/README.md.
 std::string machine(const Measurements& measured);
 
-/// The README's table: sizes across, drumhead and its rivals down. Markdown.
-std::string key_table(const Measurements& measured);
-
 }  // namespace drumhead::bench

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 #include "html.h"
 
@@ -158,11 +159,21 @@ class Drawing {
                x2, y2));
   }
 
+  std::set<double> x_of_points() const {
+    std::set<double> all;
+    for (const PlotSeries& series : plot_.series)
+      for (const PlotPoint& point : series.points)
+        if (x_.shows(point.x)) all.insert(point.x);
+    return all;
+  }
+
   void add_axes() {
     const double bottom = kHeight - kBottom, right = kWidth - kRight;
     std::vector<std::pair<double, std::string>> ticks;
     for (std::size_t k = 0; k < plot_.x_words.size(); ++k)
       ticks.push_back({double(k), plot_.x_words[k]});
+    if (plot_.x_at_points)
+      for (const double x : x_of_points()) ticks.push_back({x, format("%.4g", x)});
     if (ticks.empty()) ticks = x_.ticks();
     for (const auto& [value, name] : ticks) {
       const double x = x_.at(value);
@@ -228,11 +239,15 @@ class Drawing {
   std::string text_;
 };
 
-std::string colours(const char* const* palette) {
-  std::string css;
+/// What depends on the reader's scheme. In plain values: not every reader of SVG knows variables.
+std::string scheme(const char* ink, const char* faint, const char* grid, const char* paper,
+                   const char* const* palette) {
+  std::string css =
+      format(".plot text{fill:%s}.plot .label{fill:%s}.plot .grid{stroke:%s}", ink, faint, grid);
   for (int look = 0; look < kLooks; ++look)
-    css += format(".plot .s%d{--c:%s}", look, palette[look]);
-  return css;
+    css += format(".plot .line.s%d{stroke:%s}.plot .mark.s%d{fill:%s;stroke:%s}", look,
+                  palette[look], look, palette[look], palette[look]);
+  return css + format(".plot .mark.hollow{fill:%s}", paper);
 }
 
 }  // namespace
@@ -251,22 +266,15 @@ std::string svg_file_of(const SvgPlot& plot) {
 }
 
 std::string plot_style() {
-  const std::string light =
-      "--plot-ink:#24292f;--plot-faint:#6b7178;--plot-grid:#d8dce1;"
-      "--plot-paper:#fff";
-  const std::string dark =
-      "--plot-ink:#e4e6e9;--plot-faint:#9aa0a8;--plot-grid:#3d444d;"
-      "--plot-paper:#17191c";
-  return ".plot{" + light + ";font:12px system-ui,-apple-system,'Segoe UI',sans-serif}" +
-         colours(kLight) + "@media (prefers-color-scheme:dark){.plot{" + dark + "}" +
-         colours(kDark) + "}" +
-         ".plot text{fill:var(--plot-ink)}.plot .title{font-size:14px;font-weight:600}"
-         ".plot .label{font-size:10px;fill:var(--plot-faint)}"
-         ".plot .grid{stroke:var(--plot-grid)}.plot .fine{opacity:.45}"
-         ".plot .line{stroke:var(--c);stroke-width:2;fill:none;stroke-linejoin:round}"
+  return ".plot{font:12px system-ui,-apple-system,'Segoe UI',sans-serif}" +
+         scheme("#24292f", "#6b7178", "#d8dce1", "#fff", kLight) +
+         "@media (prefers-color-scheme:dark){" +
+         scheme("#e4e6e9", "#9aa0a8", "#3d444d", "#17191c", kDark) + "}" +
+         ".plot .title{font-size:14px;font-weight:600}.plot .label{font-size:10px}"
+         ".plot .fine{opacity:.45}"
+         ".plot .line{stroke-width:2;fill:none;stroke-linejoin:round}"
          ".plot .dashed{stroke-dasharray:7 4}.plot .dotted{stroke-dasharray:2 4}"
-         ".plot .mark{fill:var(--c);stroke:var(--c);stroke-width:1.5}"
-         ".plot .hollow{fill:var(--plot-paper)}";
+         ".plot .mark{stroke-width:1.5}";
 }
 
 }  // namespace drumhead::bench

@@ -24,6 +24,7 @@ struct PlotSeries {
 struct SvgPlot {
   std::string title, x_name, y_name;
   bool log_x = true, log_y = true;
+  bool x_at_points = false;  ///< lines and numbers where points are, instead of round values
   std::vector<PlotSeries> series;
   /// Where the x axis counts in words instead of numbers: point k's x is k.
   std::vector<std::string> x_words;

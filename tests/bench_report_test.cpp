@@ -12,6 +12,7 @@ namespace drumhead {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 
 const char* kRows = R"({
  "program": "speed_bench", "command": "speed_bench table1", "date": "2026-01-02T03:04:05Z",
@@ -67,7 +68,7 @@ TEST_F(BenchReport, makes_one_page_with_tables_plots_and_what_is_lost) {
   const std::string page = read("page.html");
   EXPECT_TRUE(holds(page, "<td>drumhead, averaged, 1 thread</td>"));
   EXPECT_TRUE(holds(page, "<td class=\"number\">0.004</td>"));
-  EXPECT_TRUE(holds(page, "<title>drumhead, averaged, 1: 100; 0.004</title>"));
+  EXPECT_TRUE(holds(page, "<title>drumhead, averaged, 1 thread: 100; 0.004</title>"));
   EXPECT_TRUE(holds(page, "Rival takes 0.001 s at 100², 1 thread; drumhead 0.004 s."));
   EXPECT_TRUE(holds(page, "solve: S5 kappa 7, 100²: limit."));
   EXPECT_TRUE(holds(page, "speed_bench table1</td><td>2026-01-02T03:04:05Z</td><td>abc1234</td>"));
@@ -88,6 +89,33 @@ TEST_F(BenchReport, prints_the_same_numbers_as_markdown) {
   const std::string tables = read("out");
   EXPECT_TRUE(holds(tables, "| drumhead, averaged, 1 thread | 0.002 | 0.004 |"));
   EXPECT_TRUE(holds(tables, "| 128² S2, kappa ∞ | 273 (16) | –* (2) |"));
+}
+
+TEST_F(BenchReport, makes_the_tables_of_a_readme_anew_and_leaves_the_rest) {
+  write(
+      "README.md",
+      "before\n<!-- table table1, made by bench/report.sh -->\nold\n<!-- end of table table1 -->\n"
+      "after\n");
+  ASSERT_EQ(report("--readme README.md rows.json"), 0) << read("err");
+  const std::string readme = read("README.md");
+  EXPECT_TRUE(holds(readme, "before\n<!-- table table1, made by bench/report.sh -->\n| seconds"));
+  EXPECT_TRUE(holds(readme, "| drumhead, averaged, 1 thread | 0.002 (0.19) | 0.004 (0.67) |"))
+      << readme;
+  EXPECT_TRUE(holds(readme, "Commit abc1234"));
+  EXPECT_TRUE(readme.ends_with("<!-- end of table table1 -->\nafter\n"));
+  EXPECT_FALSE(holds(readme, "old"));
+}
+
+TEST_F(BenchReport, refuses_a_readme_whose_marks_are_wrong) {
+  const std::string open = "<!-- table table1, made by bench/report.sh -->\n";
+  for (const std::string& text :
+       {open + "no end\n",
+        "<!-- table other, made by bench/report.sh -->\n<!-- end of table other -->\n"s}) {
+    write("README.md", text);
+    EXPECT_EQ(report("--readme README.md rows.json"), 2);
+    EXPECT_TRUE(holds(read("err"), "README: ")) << read("err");
+    EXPECT_EQ(read("README.md"), text);
+  }
 }
 
 TEST_F(BenchReport, holds_the_pictures_of_a_folder) {
