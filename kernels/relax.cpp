@@ -244,11 +244,11 @@ class Relaxation {
     auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, {}, j); };
     if (!special_) return sweep();
     keep_special_row(*special_, level_.f, d_, parity, j, kept, sweep);
-    relax_part_row(*special_, level_.membrane, f_, d_, parity, reverse, j);
+    relax_part_row(*special_, f_, d_, parity, reverse, j);
   }
   void parts(bool reverse, int j) const {
     for (const int column : {int(reverse), int(!reverse)})
-      relax_part_row(*special_, level_.membrane, f_, d_, column, reverse, j);
+      relax_part_row(*special_, f_, d_, column, reverse, j);
   }
   void cuts(bool reverse, int j) const {
     relax_cuts_row(level_.membrane, level_.cuts, level_.fq, level_.dq, d_, level_.f, reverse, j);

@@ -123,11 +123,12 @@ template <class T>
 int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
   const SpecialRows<T>& rows = *m.special;
   int inverted = 0;
-  for (int j = 1; j + 1 < m.ux.rows; ++j)
+  for (int j = 1; j + 1 < m.ux.rows; ++j) {
+    for (const int i : rows.held(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
       const NearRow<T>& row = rows.near(n);
       Vector2<T> sum{T(0), T(0)};
-      for (int q = 0; q < 4 && row.inverse != T(0); ++q) {
+      for (int q = 0; q < 4; ++q) {
         if (!(row.regular >> q & 1)) continue;
         const Vector2<T> force = regular_force(m, row.column, j, q);
         sum = {sum.x + force.x, sum.y + force.y};
@@ -135,6 +136,7 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
       f.x.at(row.column, j) = sum.x;
       f.y.at(row.column, j) = sum.y;
     }
+  }
   for_special(rows.cells(), [&](int n, int i, int j) {
     add_triangle_force(m, f, n, i, j);
     if (!m.pressure) return;

@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "special_state.h"
 
 namespace drumhead::kernels {
 namespace {
 
-/// Place in a 3 × 3 stencil of corner `other` of a cell, seen from its corner `own`.
+/// Place in a NearRow of corner `other` of a cell, seen from its corner `own`.
 std::size_t stencil_place(int own, int other) {
-  return std::size_t(4 + ((other & 1) - (own & 1)) + 3 * ((other >> 1) - (own >> 1)));
+  constexpr std::array<std::size_t, kStencilPlaces> kPlace{0, 6, 1, 2, 8, 3, 4, 7, 5};
+  return kPlace[std::size_t(4 + ((other & 1) - (own & 1)) + 3 * ((other >> 1) - (own >> 1)))];
 }
+
+/// Place of the node itself.
+constexpr std::size_t kOwn = kStencilPlaces - 1;
 
 /// Corners of a cell that follow and precede one in the sense 00, 10, 11, 01.
 constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
@@ -27,11 +32,13 @@ constexpr double kPartJump = 4.0;
 /// The corner of cell q of sw, se, nw, ne that is the node itself.
 constexpr int corner_towards_node(int q) { return 3 - q; }
 
-template <class T>
-bool is_known(const SpecialCells<T>& cells, int i, int j) {
-  const auto begin = cells.known.begin() + cells.known_begin[std::size_t(j)];
-  const auto end = cells.known.begin() + cells.known_begin[std::size_t(j) + 1];
-  return std::any_of(begin, end, [&](const KnownNode<T>& node) { return node.column == i; });
+/// Sorts the columns that were listed since row j began by parity and halves them.
+void halve(std::vector<int>& columns, std::vector<int>& begin, int j) {
+  const auto row = columns.begin() + begin[2 * std::size_t(j)];
+  const auto odd = std::stable_partition(row, columns.end(), [](int i) { return i % 2 == 0; });
+  begin[2 * std::size_t(j) + 1] = int(odd - columns.begin());
+  begin[2 * std::size_t(j) + 2] = int(columns.size());
+  std::for_each(row, columns.end(), [](int& i) { i /= 2; });
 }
 
 /// visit(vertex index, its corner, part) for the vertices of cell `n`'s parts that are corners.
@@ -52,17 +59,19 @@ SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& mem
     : cells_(&cells), part_(std::size_t(cells.parts())) {
   list_near_nodes(membrane.ux.columns, membrane.ux.rows);
   add_stiffness(membrane);
+  list_visits();
   list_couplings();
 }
 
 template <class T>
 void SpecialRows<T>::list_near_nodes(int columns, int rows) {
   struct Corner {
-    int column, cell, corner;
+    int column, cell, corner;  // cell −1: a known node
   };
   corner_.assign(4 * std::size_t(cells_->size()), -1);
   near_begin_.assign(std::size_t(rows) + 1, 0);
-  loose_begin_ = near_begin_;
+  held_begin_ = loose_begin_ = near_begin_;
+  near_half_begin_.assign(2 * std::size_t(rows) + 1, 0);
   std::vector<Corner> corners;
   for (int j = 1; j + 1 < rows; ++j) {
     corners.clear();
@@ -74,23 +83,53 @@ void SpecialRows<T>::list_near_nodes(int columns, int rows) {
     for (int k = cells_->known_begin[std::size_t(j)]; k < cells_->known_begin[std::size_t(j) + 1];
          ++k)
       corners.push_back({cells_->known[std::size_t(k)].column, -1, 0});
-    std::ranges::sort(corners, {}, &Corner::column);
-    for (const Corner& c : corners) {
-      if (c.column == 0 || c.column + 1 == columns) continue;
-      if (int(near_.size()) == near_begin_[std::size_t(j)] || near_.back().column != c.column)
-        near_.push_back({.column = c.column, .inverse = T(!is_known(*cells_, c.column, j))});
-      if (c.cell < 0) continue;
-      near_.back().regular &= ~(1 << corner_towards_node(c.corner));
-      corner_[4 * std::size_t(c.cell) + std::size_t(c.corner)] = int(near_.size()) - 1;
+    std::ranges::sort(corners, {}, [](const Corner& c) { return std::pair(c.column, c.cell); });
+    for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
+      const int column = corners[first].column;
+      int regular = 15;
+      for (end = first; end < corners.size() && corners[end].column == column; ++end)
+        if (corners[end].cell >= 0) regular &= ~(1 << corner_towards_node(corners[end].corner));
+      if (column == 0 || column + 1 == columns) continue;
+      near_half_.push_back(column);
+      if (corners[first].cell < 0) {
+        held_.push_back(column);
+        if (regular != 0) loose_.push_back(column);
+        continue;
+      }
+      for (std::size_t c = first; c < end; ++c)
+        corner_[4 * std::size_t(corners[c].cell) + std::size_t(corners[c].corner)] =
+            int(near_.size());
+      near_.push_back({.column = column, .regular = regular});
     }
+    halve(near_half_, near_half_begin_, j);
     near_begin_[std::size_t(j) + 1] = int(near_.size());
-    for (int n = near_begin_[std::size_t(j)]; n < near_begin_[std::size_t(j) + 1]; ++n)
-      if (const NearRow<T>& row = near_[std::size_t(n)]; row.inverse == T(0) && row.regular != 0)
-        loose_.push_back(row.column);
+    held_begin_[std::size_t(j) + 1] = int(held_.size());
     loose_begin_[std::size_t(j) + 1] = int(loose_.size());
   }
   near_begin_[std::size_t(rows)] = int(near_.size());
+  held_begin_[std::size_t(rows)] = int(held_.size());
   loose_begin_[std::size_t(rows)] = int(loose_.size());
+  for (const int last : {2 * rows - 1, 2 * rows})
+    near_half_begin_[std::size_t(last)] = int(near_half_.size());
+}
+
+template <class T>
+void SpecialRows<T>::list_visits() {
+  const SpecialCells<T>& cells = *cells_;
+  visit_begin_.assign(1, 0);
+  for (std::size_t j = 0; j + 1 < cells.row_begin.size(); ++j)
+    for (const int parity : {0, 1}) {
+      for (int n = cells.row_begin[j]; n < cells.row_begin[j + 1]; ++n) {
+        if ((cells.column[std::size_t(n)] & 1) != parity) continue;
+        CellVisit<T>& visit = visit_.emplace_back();
+        visit.column = cells.column[std::size_t(n)];
+        visit.cell = n;
+        for (int c = 0; c < 4; ++c)
+          if (const int node = unknown_corner(n, c); node >= 0)
+            visit.inverse[c] = near(node).inverse;
+      }
+      visit_begin_.push_back(int(visit_.size()));
+    }
 }
 
 template <class T>
@@ -139,16 +178,15 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
   for (int j = 1; j + 1 < membrane.ux.rows; ++j)
     for (int n = near_begin(j); n < near_begin(j + 1); ++n) {
       NearRow<T>& row = near_[std::size_t(n)];
-      if (row.inverse == T(0)) continue;
       for (int q = 0; q < 4; ++q) {
         if (!(row.regular >> q & 1)) continue;
         const int own = corner_towards_node(q);
         const T mu = mu_at(membrane, row.column - (own & 1), j - (own >> 1));
-        row.k[4] += mu;
+        row.k[kOwn] += mu;
         row.k[stencil_place(own, own ^ 1)] -= T(0.5) * mu;
         row.k[stencil_place(own, own ^ 2)] -= T(0.5) * mu;
       }
-      row.inverse = T(1) / row.k[4];
+      row.inverse = T(1) / row.k[kOwn];
     }
 }
 
@@ -157,8 +195,8 @@ void SpecialRows<T>::linearise_regular(const Membrane<T>& m) {
   for (int j = 1; j + 1 < m.ux.rows; ++j)
     for (int n = near_begin(j); n < near_begin(j + 1); ++n) {
       NearRow<T>& row = near_[std::size_t(n)];
-      std::fill_n(row.g, 9, T(0));
-      if (!m.pressure || row.inverse == T(0)) continue;
+      std::fill_n(row.g, kStencilPlaces - 1, T(0));
+      if (!m.pressure) continue;
       for (int q = 0; q < 4; ++q) {
         if (!(row.regular >> q & 1)) continue;
         const int own = corner_towards_node(q), i0 = row.column - (own & 1), j0 = j - (own >> 1);
@@ -191,7 +229,7 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
     const int slot = slot_[std::size_t(v)];
     if (slot < 0) continue;
     const int own = cells.vertex[std::size_t(v)].vertex;
-    NearRow<T>& node = near_[std::size_t(corner(cell, own))];
+    NearRow<T>& node = near_[std::size_t(unknown_corner(cell, own))];
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
     if (next.vertex < kFirstCrossing) node.g[stencil_place(own, next.vertex)] += half;
@@ -212,6 +250,7 @@ template <class T>
 void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
   const SpecialCells<T>& cells = *cells_;
   jump_.assign(cells.neighbour.size(), T(0));
+  has_jumps_ = m.pressure_jump != T(0);
   if (m.pressure_jump == T(0)) return;
   constexpr int kEast[] = {0, 1, 0, -1}, kNorth[] = {-1, 0, 1, 0};
   auto set = [&](std::size_t p, int k, int i, int j) {
@@ -239,6 +278,20 @@ void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
 }
 
 template <class T>
+void SpecialRows<T>::set_steps(const Membrane<T>& m) {
+  // As in relax_volume: s stays positive where all has collapsed, or all corners are known.
+  const T floor = T(1e-6) * m.spacing * m.spacing / (T(4) * m.mu.value);
+  for (const CellVisit<T>& visit : visit_)
+    for_parts(*cells_, visit.cell, [&](int p) {
+      PartRow<T>& row = part_[std::size_t(p)];
+      T s = (row.compliance + row.jumps) + floor;
+      for (int c = 0; c < 4; ++c)
+        s += (row.bx[c] * row.bx[c] + row.by[c] * row.by[c]) * visit.inverse[c];
+      row.inverse = T(1) / s;
+    });
+}
+
+template <class T>
 void SpecialRows<T>::linearise(const Membrane<T>& m) {
   if (!cells_) return;
   linearise_regular(m);
@@ -247,13 +300,18 @@ void SpecialRows<T>::linearise(const Membrane<T>& m) {
     for_parts(*cells_, n, [&](int p) { linearise_part(m, n, p, j); });
   });
   set_jumps(m);
+  set_steps(m);
 }
 
 template <class T>
 std::size_t SpecialRows<T>::bytes() const {
-  return (near_begin_.size() + corner_.size() + slot_.size()) * sizeof(int) +
-         near_.size() * sizeof(NearRow<T>) + part_.size() * sizeof(PartRow<T>) +
-         coupling_.size() * sizeof(PartCoupling<T>);
+  std::size_t indices = slot_.size() + corner_.size();
+  for (const auto* list : {&near_begin_, &held_, &held_begin_, &loose_, &loose_begin_, &near_half_,
+                           &near_half_begin_, &visit_begin_})
+    indices += list->size();
+  return indices * sizeof(int) + near_.size() * sizeof(NearRow<T>) +
+         visit_.size() * sizeof(CellVisit<T>) + part_.size() * sizeof(PartRow<T>) +
+         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>);
 }
 
 template class SpecialRows<float>;

@@ -4,52 +4,117 @@
 // Plain loops, compiled once for every instruction set.
 #include <drumhead/kernels/special.h>
 
+#include "special_state.h"
+
 namespace drumhead::kernels {
 
-/// Pointers to three rows of a plane around (i, j).
+/// Four numbers side by side, in the vectors of 16 bytes that every x86-64 has.
 template <class T>
-struct Neighbourhood {
-  const T *side[3], *middle[3];  // side: west at [0], east at [1]
-  Neighbourhood(const Plane<const T>& f, int i, int j) {
-    const int parity = i & 1, k = i >> 1;
-    for (int r = 0; r < 3; ++r) {
-      side[r] = f.half(j - 1 + r, 1 - parity) + (k - 1 + parity);
-      middle[r] = f.half(j - 1 + r, parity) + k;
-    }
+class Four {
+ public:
+  Four(T a, T b, T c, T d) {
+    if constexpr (kVectors == 1)
+      v_[0] = Vector{a, b, c, d};
+    else
+      v_[0] = Vector{a, b}, v_[1] = Vector{c, d};
   }
+  explicit Four(T a) : Four(a, a, a, a) {}
+  explicit Four(const T* at) { __builtin_memcpy(v_, at, sizeof v_); }
+  /// Two from one place.
+  Four(const T* first, T c, T d) {
+    using Two [[gnu::vector_size(2 * sizeof(T))]] = T;
+    Two one, two{c, d};
+    __builtin_memcpy(&one, first, sizeof one);
+    if constexpr (kVectors == 1)
+      v_[0] = __builtin_shufflevector(one, two, 0, 1, 2, 3);
+    else
+      v_[0] = one, v_[1] = two;
+  }
+  friend Four operator*(Four a, const Four& b) {
+    for (int n = 0; n < kVectors; ++n) a.v_[n] *= b.v_[n];
+    return a;
+  }
+  friend Four operator+(Four a, const Four& b) {
+    for (int n = 0; n < kVectors; ++n) a.v_[n] += b.v_[n];
+    return a;
+  }
+  friend Four operator-(Four a, const Four& b) {
+    for (int n = 0; n < kVectors; ++n) a.v_[n] -= b.v_[n];
+    return a;
+  }
+  T operator[](int n) const { return v_[n / kLanes][n % kLanes]; }
+  T sum() const { return ((*this)[0] + (*this)[2]) + ((*this)[1] + (*this)[3]); }
+  void store(T* at) const { __builtin_memcpy(at, v_, sizeof v_); }
+
+ private:
+  using Vector [[gnu::vector_size(16)]] = T;
+  static constexpr int kLanes = int(16 / sizeof(T)), kVectors = 4 / kLanes;
+  Vector v_[kVectors];
 };
 
-/// H d at a near node of node row j; `next`: the row after it in the list.
+/// The eight neighbours of a node in the order of NearRow, and the node.
 template <class T>
-void apply_near(const SpecialRows<T>& rows, int n, const Unknowns<const T>& d, int j, T& hx,
-                T& hy) {
+struct Neighbours {
+  Four<T> sides, rest;
+  T centre;
+  /// `side`, `middle`: the node's western neighbour and itself.
+  Neighbours(const T* side, const T* middle, std::ptrdiff_t stride)
+      : sides(side - stride, side[0], side[1]),
+        rest(side + stride, middle[-stride], middle[stride]),
+        centre(*middle) {}
+};
+
+/// H d at near node n, of node row j.
+template <class T>
+[[gnu::always_inline]] inline Vector2<T> apply_near(const SpecialRows<T>& rows, int n,
+                                                    const Unknowns<const T>& d, int j) {
   const NearRow<T>& row = rows.near(n);
-  const Neighbourhood<T> x(d.x, row.column, j), y(d.y, row.column, j);
-  T sx[3], sy[3];
-  for (int r = 0; r < 3; ++r) {
-    const T *k = row.k + 3 * r, *g = row.g + 3 * r;
-    const T xw = x.side[r][0], xm = *x.middle[r], xe = x.side[r][1];
-    const T yw = y.side[r][0], ym = *y.middle[r], ye = y.side[r][1];
-    sx[r] = ((k[0] * xw + k[1] * xm) + k[2] * xe) + ((g[0] * yw + g[1] * ym) + g[2] * ye);
-    sy[r] = ((k[0] * yw + k[1] * ym) + k[2] * ye) - ((g[0] * xw + g[1] * xm) + g[2] * xe);
-  }
-  hx = (sx[0] + sx[1]) + sx[2];
-  hy = (sy[0] + sy[1]) + sy[2];
-  if (!d.p) return;
-  const int parity = row.column & 1, k = row.column >> 1;
-  for (int q = 0; q < 4; ++q) {
-    const int east = q & 1;
-    const T p = d.p.half(j - 1 + (q >> 1), east ? parity : 1 - parity)[east ? k : k - 1 + parity];
-    hx += row.bx[q] * p;
-    hy += row.by[q] * p;
-  }
+  const int parity = row.column & 1, half = row.column >> 1;
+  // x and y are laid out alike.
+  const std::ptrdiff_t stride = d.x.stride, begin = j * stride + half;
+  const std::ptrdiff_t middle = begin + (parity ? d.x.odd : 0),
+                       side = begin + (parity ? 0 : d.x.odd - 1);
+  const Neighbours<T> x(d.x.data + side, d.x.data + middle, stride),
+      y(d.y.data + side, d.y.data + middle, stride);
+  const Four<T> k(row.k), l(row.k + 4);
+  Four<T> hx = k * x.sides + l * x.rest, hy = k * y.sides + l * y.rest;
+  const T own = row.k[kStencilPlaces - 1];
+  if (!d.p) return {hx.sum() + own * x.centre, hy.sum() + own * y.centre};
+  const Four<T> g(row.g), h(row.g + 4);
+  const T* const west = d.p.half(j, 1 - parity) + (half - 1 + parity);
+  const T* const east = d.p.half(j, parity) + half;
+  const Four<T> p(west[-d.p.stride], east[-d.p.stride], west[0], east[0]);
+  hx = (hx + (g * y.sides + h * y.rest)) + Four<T>(row.bx) * p;
+  hy = (hy - (g * x.sides + h * x.rest)) + Four<T>(row.by) * p;
+  Vector2<T> product{hx.sum() + own * x.centre, hy.sum() + own * y.centre};
   const int end = rows.near(n + 1).coupling_begin;
-  for (int l = row.coupling_begin; l < end; ++l) {
-    const PartCoupling<T>& c = rows.coupling(l);
-    hx += c.bx * d.listed[c.part];
-    hy += c.by * d.listed[c.part];
+  for (int c = row.coupling_begin; c < end; ++c) {
+    const PartCoupling<T>& coupling = rows.coupling(c);
+    product.x += coupling.bx * d.listed[coupling.part];
+    product.y += coupling.by * d.listed[coupling.part];
   }
+  return product;
 }
+
+/// The corners 00, 10, 01, 11 of cell (i, j) of a plane.
+template <class T>
+struct CornerValues {
+  T *south_west, *south_east;
+  std::ptrdiff_t stride;
+  CornerValues(const Plane<T>& f, int i, int j)
+      : south_west(f.half(j, 0) + ((i & 1) ? f.odd : 0) + (i >> 1)),
+        south_east(f.half(j, 0) + ((i & 1) ? 0 : f.odd) + ((i + 1) >> 1)),
+        stride(f.stride) {}
+  Four<std::remove_const_t<T>> load() const {
+    return {south_west[0], south_east[0], south_west[stride], south_east[stride]};
+  }
+  void store(const Four<T>& values) const {
+    south_west[0] = values[0];
+    south_east[0] = values[1];
+    south_west[stride] = values[2];
+    south_east[stride] = values[3];
+  }
+};
 
 /// visit(part) for the parts of the special cells in row j.
 template <class T, class F>
@@ -75,19 +140,13 @@ void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
                         const Unknowns<const T>& d, const SplitRow<T>& out_x,
                         const SplitRow<T>& out_y, int j) {
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-    const NearRow<T>& row = rows.near(n);
-    const int parity = row.column & 1, k = row.column >> 1;
-    T hx = T(0), hy = T(0);
-    if (row.inverse != T(0)) {
-      apply_near(rows, n, d, j, hx, hy);
-      if (f) {
-        hx = f->x.half(j, parity)[k] - hx;
-        hy = f->y.half(j, parity)[k] - hy;
-      }
-    }
-    out_x.half[parity][k] = hx;
-    out_y.half[parity][k] = hy;
+    const int i = rows.near(n).column, parity = i & 1, k = i >> 1;
+    Vector2<T> value = apply_near(rows, n, d, j);
+    if (f) value = {f->x.half(j, parity)[k] - value.x, f->y.half(j, parity)[k] - value.y};
+    out_x.half[parity][k] = value.x;
+    out_y.half[parity][k] = value.y;
   }
+  for (const int i : rows.held(j)) out_x.half[i & 1][i >> 1] = out_y.half[i & 1][i >> 1] = T(0);
 }
 
 /// visit(border) for the borders of regular cells of row j with parts.
@@ -97,16 +156,11 @@ void for_borders(const SpecialCells<T>& cells, int j, F&& visit) {
     visit(cells.border[std::size_t(b)]);
 }
 
-/// Row of part p of special cell (i, j), times d.
+/// What the jumps between part p of special cell (i, j) and its neighbours add to its row: the
+/// neighbours' share.
 template <class T>
-T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p, int i, int j) {
-  const PartRow<T>& row = rows.part(p);
+T neighbour_jumps(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p, int i, int j) {
   T sum = T(0);
-  for (int c = 0; c < 4; ++c)
-    sum += row.bx[c] * d.x.at(i + (c & 1), j + (c >> 1)) +
-           row.by[c] * d.y.at(i + (c & 1), j + (c >> 1));
-  sum -= (row.compliance + row.jumps) * d.listed[p];
-  if (row.jumps == T(0)) return sum;
   const std::vector<int>& begin = rows.cells().neighbour_begin;
   for (int k = begin[std::size_t(p)]; k < begin[std::size_t(p) + 1]; ++k) {
     const PartNeighbour& other = rows.cells().neighbour[std::size_t(k)];
@@ -115,6 +169,17 @@ T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p, int 
                                            : d.p.at(i + kEast[other.side], j + kNorth[other.side]));
   }
   return sum;
+}
+
+/// Row of part p of special cell (i, j), times d, whose values at the cell's corners are x, y.
+template <class T>
+[[gnu::always_inline]] inline T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d,
+                                           const Four<T>& x, const Four<T>& y, int p, int i,
+                                           int j) {
+  const PartRow<T>& row = rows.part(p);
+  const T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
+                    (row.compliance + row.jumps) * d.listed[p];
+  return row.jumps == T(0) ? product : product + neighbour_jumps(rows, d, p, i, j);
 }
 
 /// Special cells of cell row j: 0 in the plane's row, B d − compliance dP (or f − that) per part.
@@ -126,11 +191,14 @@ void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
     const int i = cells.column[std::size_t(n)];
     out_p.half[i & 1][i >> 1] = T(0);
+    const Four<T> x = CornerValues<const T>(d.x, i, j).load(),
+                  y = CornerValues<const T>(d.y, i, j).load();
     for (int p = cells.part_begin[std::size_t(n)]; p < cells.part_begin[std::size_t(n) + 1]; ++p) {
-      const T product = apply_part(rows, d, p, i, j);
+      const T product = apply_part(rows, d, x, y, p, i, j);
       out[p] = f ? f->listed[p] - product : product;
     }
   }
+  if (!rows.has_jumps()) return;
   // The vectorised kernels took dP of special cells as 0.
   for_borders(cells, j, [&](const PartBorder& border) {
     const T jump = rows.jump(border.neighbour) * d.listed[border.part];
@@ -144,45 +212,36 @@ void relax_near_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, cons
                     int j) {
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
     const NearRow<T>& row = rows.near(n);
-    if (row.inverse == T(0)) continue;
-    T hx, hy;
-    apply_near<T>(rows, n, d, j, hx, hy);
+    const Vector2<T> product = apply_near<T>(rows, n, d, j);
     const int parity = row.column & 1, k = row.column >> 1;
-    d.x.half(j, parity)[k] += (f.x.half(j, parity)[k] - hx) * row.inverse;
-    d.y.half(j, parity)[k] += (f.y.half(j, parity)[k] - hy) * row.inverse;
+    d.x.half(j, parity)[k] += (f.x.half(j, parity)[k] - product.x) * row.inverse;
+    d.y.half(j, parity)[k] += (f.y.half(j, parity)[k] - product.y) * row.inverse;
   }
 }
 
 /// Kaczmarz, weighted by the diagonal, on the parts of the special cells of column parity `parity`
 /// in cell row j; the last part first if `reverse`.
 template <class T>
-void relax_part_row(const SpecialRows<T>& rows, const Membrane<T>& membrane,
-                    const Unknowns<const T>& f, const Unknowns<T>& d, int parity, bool reverse,
-                    int j) {
+void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, const Unknowns<T>& d,
+                    int parity, bool reverse, int j) {
   const SpecialCells<T>& cells = rows.cells();
-  // As in relax_volume: s stays positive where all has collapsed, or all corners are known.
-  const T floor = T(1e-6) * membrane.spacing * membrane.spacing / (T(4) * membrane.mu.value);
-  for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
-    const int i = cells.column[std::size_t(n)];
-    if ((i & 1) != parity) continue;
-    T inverse[4];
-    for (int c = 0; c < 4; ++c) {
-      const int node = rows.corner(n, c);
-      inverse[c] = node < 0 ? T(0) : rows.near(node).inverse;
-    }
-    const int begin = cells.part_begin[std::size_t(n)], end = cells.part_begin[std::size_t(n) + 1];
+  for (const CellVisit<T>& visit : rows.visits(j, parity)) {
+    const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
+    Four<T> x = at_x.load(), y = at_y.load();
+    const Four<T> inverse(visit.inverse);
+    const int begin = cells.part_begin[std::size_t(visit.cell)],
+              end = cells.part_begin[std::size_t(visit.cell) + 1];
     for (int m = 0; m < end - begin; ++m) {
       const int p = reverse ? end - 1 - m : begin + m;
       const PartRow<T>& row = rows.part(p);
-      T s = (row.compliance + row.jumps) + floor;
-      for (int c = 0; c < 4; ++c) s += (row.bx[c] * row.bx[c] + row.by[c] * row.by[c]) * inverse[c];
-      const T t = (f.listed[p] - apply_part<T>(rows, d, p, i, j)) / s;
+      const T t = (f.listed[p] - apply_part<T>(rows, d, x, y, p, visit.column, j)) * row.inverse;
       d.listed[p] -= t;
-      for (int c = 0; c < 4; ++c) {
-        d.x.at(i + (c & 1), j + (c >> 1)) += row.bx[c] * inverse[c] * t;
-        d.y.at(i + (c & 1), j + (c >> 1)) += row.by[c] * inverse[c] * t;
-      }
+      const Four<T> move = inverse * Four<T>(t);
+      x = x + Four<T>(row.bx) * move;
+      y = y + Four<T>(row.by) * move;
     }
+    at_x.store(x);
+    at_y.store(y);
   }
 }
 
@@ -192,69 +251,70 @@ template <class T, class F>
 void keep_near_row(const SpecialRows<T>& rows, const Unknowns<T>& d, int parity, int j, T* kept,
                    F&& sweep) {
   T *x = d.x.half(j, parity), *y = d.y.half(j, parity);
-  auto each = [&](auto&& visit) {
-    T* slot = kept;
-    for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n)
-      if (const int i = rows.near(n).column; (i & 1) == parity) {
-        visit(slot, i >> 1);
-        slot += 2;
-      }
-  };
-  each([&](T* slot, int k) {
-    slot[0] = x[k];
-    slot[1] = y[k];
-  });
+  T* slot = kept;
+  for (const int k : rows.near_half(j, parity)) {
+    *slot++ = x[k];
+    *slot++ = y[k];
+  }
   sweep();
-  each([&](const T* slot, int k) {
-    x[k] = slot[0];
-    y[k] = slot[1];
-  });
+  slot = kept;
+  for (const int k : rows.near_half(j, parity)) {
+    x[k] = *slot++;
+    y[k] = *slot++;
+  }
 }
 
-/// The same for a sweep over the volume rows of the cells of columns `parity` in cell row j, which
-/// share no node: the corners of special cells keep their values, known nodes their 0. The sweep
-/// takes dP of special cells as 0; meanwhile f carries the jump terms that this leaves out. `kept`:
-/// eight values a special cell, one a border.
+/// Runs a sweep while f of the regular cells of columns `parity` in cell row j that have a part as
+/// neighbour carries the jump terms with its dP. `kept`: one value a border.
 template <class T, class F>
-void keep_special_row(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
-                      int parity, int j, T* kept, F&& sweep) {
-  const SpecialCells<T>& cells = rows.cells();
-  auto each = [&](auto&& visit, auto&& visit_border) {
+void with_border_jumps(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
+                       int parity, int j, T* kept, F&& sweep) {
+  if (!rows.has_jumps()) return sweep();
+  auto each = [&](auto&& visit) {
     T* slot = kept;
-    for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
-      if (const int i = cells.column[std::size_t(n)]; (i & 1) == parity) {
-        visit(slot, i);
-        slot += 8;
-      }
     int before = -1;
-    for_borders(cells, j, [&](const PartBorder& border) {
+    for_borders(rows.cells(), j, [&](const PartBorder& border) {
       if ((border.column & 1) != parity) return;
-      visit_border(*slot++, border, border.column != before);
+      visit(*slot++, border, border.column != before);
       before = border.column;
     });
   };
-  auto keep = [&](T* slot, int i) {
-    for (int c = 0; c < 4; ++c) {
-      slot[c] = d.x.at(i + (c & 1), j + (c >> 1));
-      slot[4 + c] = d.y.at(i + (c & 1), j + (c >> 1));
-    }
-  };
-  each(keep, [&](T& slot, const PartBorder& border, bool) {
+  each([&](T& slot, const PartBorder& border, bool) {
     T& volume = f.p.at(border.column, j);
     slot = volume;
     volume -= rows.jump(border.neighbour) * d.listed[border.part];
   });
   sweep();
-  auto restore = [&](const T* slot, int i) {
-    for (int c = 0; c < 4; ++c) {
-      d.x.at(i + (c & 1), j + (c >> 1)) = slot[c];
-      d.y.at(i + (c & 1), j + (c >> 1)) = slot[4 + c];
-    }
-    d.p.at(i, j) = T(0);
-  };
-  each(restore, [&](const T& slot, const PartBorder& border, bool first) {
+  each([&](const T& slot, const PartBorder& border, bool first) {
     if (first) f.p.at(border.column, j) = slot;
   });
+}
+
+/// keep_near_row for a sweep over the volume rows of the cells of columns `parity` in cell row j,
+/// which share no node: the corners of special cells keep their values, known nodes their 0. The
+/// sweep takes dP of special cells as 0; meanwhile f carries the jump terms that this leaves out.
+/// `kept`: eight values a special cell, one a border.
+template <class T, class F>
+void keep_special_row(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
+                      int parity, int j, T* kept, F&& sweep) {
+  const auto visits = rows.visits(j, parity);
+  T* slot = kept;
+  for (const CellVisit<T>& visit : visits) {
+    const Four<T> x = CornerValues<T>(d.x, visit.column, j).load(),
+                  y = CornerValues<T>(d.y, visit.column, j).load();
+    x.store(slot);
+    y.store(slot + 4);
+    slot += 8;
+  }
+  with_border_jumps(rows, f, d, parity, j, slot, sweep);
+  slot = kept;
+  T* const p = d.p.half(j, parity);
+  for (const CellVisit<T>& visit : visits) {
+    CornerValues<T>(d.x, visit.column, j).store(Four<T>(slot));
+    CornerValues<T>(d.y, visit.column, j).store(Four<T>(slot + 4));
+    slot += 8;
+    p[visit.column >> 1] = T(0);
+  }
   for (const int row : {j, j + 1})
     for (const int i : rows.loose(row)) d.x.at(i, row) = d.y.at(i, row) = T(0);
 }
@@ -274,9 +334,7 @@ void finish_prolongation(const SpecialRows<T>& rows, const SpecialTransfer<T>& t
       fine.y.at(node.fine, j) += node.weight[c] * coarse.y.at(I, J);
     }
   }
-  for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n)
-    if (const NearRow<T>& row = rows.near(n); row.inverse == T(0))
-      fine.x.at(row.column, j) = fine.y.at(row.column, j) = T(0);
+  for (const int i : rows.held(j)) fine.x.at(i, j) = fine.y.at(i, j) = T(0);
   if (!fine.p) return;
   const SpecialCells<T>& cells = rows.cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
@@ -293,9 +351,7 @@ void finish_prolongation(const SpecialRows<T>& rows, const SpecialTransfer<T>& t
 /// has no equation.
 template <class T>
 void clear_without_equation(const SpecialRows<T>& coarse_rows, const Unknowns<T>& coarse, int j) {
-  for (int n = coarse_rows.near_begin(j); n < coarse_rows.near_begin(j + 1); ++n)
-    if (const NearRow<T>& row = coarse_rows.near(n); row.inverse == T(0))
-      coarse.x.at(row.column, j) = coarse.y.at(row.column, j) = T(0);
+  for (const int i : coarse_rows.held(j)) coarse.x.at(i, j) = coarse.y.at(i, j) = T(0);
   if (!coarse.p) return;
   const SpecialCells<T>& cells = coarse_rows.cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)

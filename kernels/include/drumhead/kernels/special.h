@@ -14,6 +14,7 @@
 // operator. A plane's value at a special cell is therefore not part of any system; corrections keep
 // 0 there.
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <drumhead/kernels/views.h>
@@ -81,15 +82,21 @@ struct SpecialCells {
   int parts() const { return int(area.size()); }
 };
 
-/// Row of a near node: stencil over its 3 × 3 nodes (west to east, south to north), the pressures
-/// of its regular cells (sw, se, nw, ne; 0 for special ones) and of the parts it belongs to.
+/// Places of a 3 × 3 stencil around a node in the order of NearRow: west and east of the southern,
+/// the middle and the northern row, then south and north, at last the node itself.
+constexpr int kStencilPlaces = 9;
+
+/// Row of a near node that is no known one: its stencil, the pressures of its regular cells (sw,
+/// se, nw, ne; 0 for special ones) and of the parts it belongs to. In the order and the size of
+/// vectors, which a node's loop is made of.
 template <class T>
 struct NearRow {
   int column = 0;
-  int coupling_begin = 0;  ///< into SpecialRows::coupling, up to the next row's
-  int regular = 15;        ///< bit q set: cell q of sw, se, nw, ne is regular
-  T inverse = T(0);        ///< 1/K_ii; 0: the node is known
-  T k[9] = {}, g[9] = {};  ///< (H d)_x = k·d_x + g·d_y, (H d)_y = k·d_y − g·d_x
+  int coupling_begin = 0;    ///< into SpecialRows::coupling, up to the next row's
+  int regular = 15;          ///< bit q set: cell q of sw, se, nw, ne is regular
+  T inverse = T(0);          ///< 1/K_ii
+  T k[kStencilPlaces] = {};  ///< (H d)_x = k·d_x + g·d_y, (H d)_y = k·d_y − g·d_x
+  T g[kStencilPlaces - 1] = {};
   T bx[4] = {}, by[4] = {};
 };
 template <class T>
@@ -104,6 +111,13 @@ struct PartRow {
   T bx[4] = {}, by[4] = {};
   T compliance = T(0);  ///< A/kappa
   T jumps = T(0);       ///< Σ jump_n
+  T inverse = T(0);  ///< 1/s of Kaczmarz's method: s = Σ (bx² + by²)/K_ii + compliance + jumps
+};
+/// A special cell as sweeps meet it.
+template <class T>
+struct CellVisit {
+  int column = 0, cell = 0;
+  T inverse[4] = {};  ///< 1/K_ii of its corners; 0: known or on the fixed boundary
 };
 
 /// The operator's rows at near nodes and parts, linearised at a state.
@@ -119,42 +133,56 @@ class SpecialRows {
   void linearise(const Membrane<T>& membrane);
 
   const SpecialCells<T>& cells() const { return *cells_; }
-  /// Near nodes of node row j, sorted by column: [near_begin(j), near_begin(j + 1)).
+  /// Near nodes of node row j that are unknown, by column: [near_begin(j), near_begin(j + 1)).
   int near_begin(int j) const { return near_begin_[std::size_t(j)]; }
-  /// Known nodes of node row j that are a corner of a regular cell.
-  Columns loose(int j) const {
-    return {loose_.data() + loose_begin_[std::size_t(j)],
-            loose_.data() + loose_begin_[std::size_t(j) + 1]};
+  /// Known nodes of node row j but those on the fixed boundary.
+  Columns held(int j) const { return columns(held_, held_begin_, j); }
+  /// Those of them that are a corner of a regular cell.
+  Columns loose(int j) const { return columns(loose_, loose_begin_, j); }
+  /// Half the column, rounded down, of the near nodes of node row j in columns of one parity.
+  Columns near_half(int j, int parity) const {
+    return columns(near_half_, near_half_begin_, 2 * j + parity);
+  }
+  /// Special cells of cell row j in columns of one parity.
+  std::span<const CellVisit<T>> visits(int j, int parity) const {
+    const int begin = visit_begin_[std::size_t(2 * j + parity)],
+              end = visit_begin_[std::size_t(2 * j + parity) + 1];
+    return {visit_.data() + begin, std::size_t(end - begin)};
   }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
   const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
+  /// Whether any neighbours are joined by a jump.
+  bool has_jumps() const { return has_jumps_; }
   /// Strength of the jump at entry k of SpecialCells::neighbour.
   T jump(int k) const { return jump_[std::size_t(k)]; }
   const PartCoupling<T>& coupling(int k) const { return coupling_[std::size_t(k)]; }
-  /// Near node at corner c of special cell n; −1: on the fixed boundary.
-  int corner(int n, int c) const { return corner_[4 * std::size_t(n) + std::size_t(c)]; }
-  /// The same, −1 for known nodes too.
-  int unknown_corner(int n, int c) const {
-    const int node = corner(n, c);
-    return node >= 0 && near(node).inverse != T(0) ? node : -1;
-  }
+  /// Near node at corner c of special cell n; −1: known or on the fixed boundary.
+  int unknown_corner(int n, int c) const { return corner_[4 * std::size_t(n) + std::size_t(c)]; }
   std::size_t bytes() const;
 
  private:
+  static Columns columns(const std::vector<int>& list, const std::vector<int>& begin, int row) {
+    return {list.data() + begin[std::size_t(row)], list.data() + begin[std::size_t(row) + 1]};
+  }
   void list_near_nodes(int columns, int rows);
   void list_couplings();
+  void list_visits();
   void add_stiffness(const Membrane<T>& membrane);
   void linearise_regular(const Membrane<T>& membrane);
   void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
   void set_jumps(const Membrane<T>& membrane);
+  void set_steps(const Membrane<T>& membrane);
 
   const SpecialCells<T>* cells_ = nullptr;
-  std::vector<int> near_begin_, corner_, loose_begin_, loose_;
+  std::vector<int> near_begin_, corner_, held_, held_begin_, loose_, loose_begin_, near_half_,
+      near_half_begin_, visit_begin_;
   std::vector<int> slot_;         // of every part vertex: index into coupling_, −1: none
   std::vector<NearRow<T>> near_;  // one more than there are, which ends the couplings of the last
+  std::vector<CellVisit<T>> visit_;
   std::vector<PartRow<T>> part_;
   std::vector<T> jump_;
   std::vector<PartCoupling<T>> coupling_;
+  bool has_jumps_ = false;
 };
 
 /// How a level with special cells hangs together with the next coarser one, beyond the transfers of
