@@ -12,7 +12,7 @@ namespace drumhead::driver {
 namespace {
 
 constexpr int kLeastSide = 500, kEnlargedSide = 1000;
-constexpr double kUnitSide = 1200, kStripWidth = 480;
+constexpr double kUnitSide = 1200, kStripWidth = 600, kTextSize = 19;
 
 int divided_up(int a, int b) { return (a + b - 1) / b; }
 
@@ -147,7 +147,7 @@ void Canvas::fill_rectangle(double x, double y, double width, double height, Col
 
 void Canvas::write_text(double x, double y, const std::string& text, bool centred) {
   cairo_t* const context = context_.get();
-  cairo_set_font_size(context, 11 * unit());
+  cairo_set_font_size(context, kTextSize * unit());
   cairo_set_source_rgb(context, 0.1, 0.1, 0.1);
   cairo_text_extents_t extents;
   cairo_text_extents(context, text.c_str(), &extents);

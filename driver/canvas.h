@@ -26,7 +26,7 @@ class Canvas {
 
   /// Of the frame's size; enlarged by a whole factor where the frame's longer side has less than
   /// 500 pixels, made smaller by one where it has more than `greatest_side`. Below the frame
-  /// `strip` units (see stroke) of room, at least 480 wide, for a legend.
+  /// `strip` units (see stroke) of room, at least 600 wide, for a legend.
   Canvas(const Frame& frame, int greatest_side, double strip = 0.0);
 
   const Frame& frame() const { return frame_; }

@@ -17,12 +17,23 @@ results=build/demo
 mkdir -p "$results"
 [ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//' | sort)
 
+# The picture before the warp: what stands still under the drawing, if anything, and the drawing.
+before() {
+  rsvg-convert --output "$results/$1-before.png" "$2.svg"
+  plate=$(sed -n 's/^plate = "\(.*\)".*/\1/p' "$examples/$1.toml")
+  [ -n "$plate" ] || return 0
+  rsvg-convert --output "$results/plate.png" "$examples/$plate"
+  oiiotool "$results/$1-before.png" "$results/plate.png" --ch R,G,B,A=1.0 --over \
+    -o "$results/$1-before.png"
+  rm "$results/plate.png"
+}
+
 for scene in "$@"; do
   drawing=$examples/$(sed -n 's/^picture = "\(.*\)\.svg".*/\1/p' "$examples/$scene.toml")
   for needed in "$drumhead" "$examples/$scene.toml" "$drawing"*.svg; do
     if [ ! -e "$results/$scene.png" ] || [ "$needed" -nt "$results/$scene.png" ]; then
       echo "Warping $examples/$scene.toml"
-      rsvg-convert --output "$results/$scene-before.png" "$drawing.svg"
+      before "$scene" "$drawing"
       # Exit code 1: not converged, and said so; its picture is there to be looked at all the same.
       "$drumhead" warp "$examples/$scene.toml" || [ $? = 1 ]
       break

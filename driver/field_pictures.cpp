@@ -157,19 +157,25 @@ double det_J(const multigrid::Solution& solution, kernels::Position rest_px) {
       .centre;
 }
 
+/// As the report counts them: J < 0 at any corner, and of those at the centre.
+struct Folds {
+  int cells = 0, turned_over = 0;
+};
+
 /// A ring at each place with folded cells; places closer than a ring's width share one.
-/// Returns the number of folded cells.
-int mark_folds(const multigrid::Solution& solution, Canvas& canvas) {
+Folds mark_folds(const multigrid::Solution& solution, Canvas& canvas) {
   constexpr double kRadius = 9.0;  // units
   const double radius = kRadius * canvas.unit() / canvas.scale();
   const kernels::LatticeMapView map = map_of(solution);
   const grid::Lattice& lattice = solution.lattice;
   std::vector<grid::Point> rings;
-  int folded = 0;
+  Folds folds;
   for (int j = 0; j < lattice.ny; ++j) {
     for (int i = 0; i < lattice.nx; ++i) {
-      if (!(multigrid::cell_J(solution, i, j).least_corner < 0.0)) continue;
-      ++folded;
+      const auto J = multigrid::cell_J(solution, i, j);
+      if (!(J.least_corner < 0.0)) continue;
+      ++folds.cells;
+      folds.turned_over += J.centre < 0.0;
       const grid::Point rest = lattice.rest_px(i, j);
       const kernels::Position p = kernels::forward_position(
           map, {rest.x + lattice.cell_px / 2, rest.y + lattice.cell_px / 2});
@@ -190,11 +196,11 @@ int mark_folds(const multigrid::Solution& solution, Canvas& canvas) {
     canvas.stroke(kRim, 4.0, true);
     canvas.stroke(kRing, 2.2);
   }
-  return folded;
+  return folds;
 }
 
-void write_legend(double least, double greatest, int folded, Canvas& canvas) {
-  constexpr double kLeft = 14, kTop = 5, kHeight = 10, kStep = 50, kSteps = 256;
+void write_legend(double least, double greatest, const Folds& folds, Canvas& canvas) {
+  constexpr double kLeft = 24, kTop = 8, kHeight = 18, kStep = 130, kSteps = 256;
   constexpr std::array kTicks{"1/4", "1/2", "1", "2", "4"};
   constexpr double kWidth = kStep * (kTicks.size() - 1);
   for (int k = 0; k < kSteps; ++k) {
@@ -204,18 +210,19 @@ void write_legend(double least, double greatest, int folded, Canvas& canvas) {
   }
   for (std::size_t k = 0; k < kTicks.size(); ++k) {
     const double x = kLeft + kStep * double(k);
-    canvas.fill_rectangle(x - 0.5, kTop + kHeight, 1, 3, {0.1, 0.1, 0.1});
-    canvas.write_text(x, kTop + kHeight + 14, kTicks[k], true);
+    canvas.fill_rectangle(x - 1, kTop + kHeight, 2, 4, {0.1, 0.1, 0.1});
+    canvas.write_text(x, kTop + kHeight + 21, kTicks[k], true);
   }
-  constexpr double kText = kLeft + kWidth + 24;
   char text[160];
-  std::snprintf(text, sizeof text, "det J (change of area): %.3g to %.3g here", least, greatest);
-  canvas.write_text(kText, kTop + 9, text);
-  if (folded > 0)
-    std::snprintf(text, sizeof text, "black: turned over; rings: %d folded cells", folded);
+  std::snprintf(text, sizeof text, "det J (change of area): %.3g to %.3g, black below 0", least,
+                greatest);
+  canvas.write_text(kLeft, kTop + kHeight + 48, text);
+  if (folds.cells > 0)
+    std::snprintf(text, sizeof text, "rings: %d folded cells, %d of them turned over", folds.cells,
+                  folds.turned_over);
   else
     std::snprintf(text, sizeof text, "no folded cells");
-  canvas.write_text(kText, kTop + 24, text);
+  canvas.write_text(kLeft, kTop + kHeight + 72, text);
 }
 
 }  // namespace
@@ -239,8 +246,8 @@ void draw_jacobian(const multigrid::Solution& solution, const std::vector<SvgCur
     add_chain(curve.pair.target, solution.lattice.cell_px, canvas, [](grid::Point p) { return p; });
     canvas.stroke({0.2, 0.2, 0.2, 0.7}, 1.2);
   }
-  const int folded = mark_folds(solution, canvas);
-  write_legend(least, greatest, folded, canvas);
+  const Folds folds = mark_folds(solution, canvas);
+  write_legend(least, greatest, folds, canvas);
 }
 
 }  // namespace drumhead::driver

@@ -18,7 +18,7 @@ void draw_checkerboard(const multigrid::Solution& solution, int width, int heigh
                        Canvas& canvas, const ShareDone& progress = {});
 
 /// Units of the legend that draw_jacobian writes in the canvas's strip.
-constexpr double kLegendStrip = 34.0;
+constexpr double kLegendStrip = 106.0;
 
 /// det J of every cell on the fixed scale of log₂ from 1/4 (blue) over 1 (white) to 4 (red), so
 /// that pictures of different warps can be compared; black where the membrane lies upside down. A

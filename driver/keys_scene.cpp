@@ -90,6 +90,13 @@ const std::array kKeys = {
         .set = set_file<&Options::curves>,
         .flag = false,
         .path = true},
+    Key{.name = "plate",
+        .value = "FILE",
+        .bound = kAnyPath,
+        .help = "a clean plate: a picture of the same size that stands still under the warped one, "
+                "which is a cut-out with alpha",
+        .set = set_file<&Options::plate>,
+        .path = true},
     Key{.name = "cells",
         .value = "N",
         .bound = "a whole number from 1 to 16384",

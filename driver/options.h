@@ -43,6 +43,7 @@ struct Options {
   std::filesystem::path scene;    ///< the scene file, where there is one
   std::filesystem::path picture;  ///< read by OpenImageIO, or .svg, which is rasterised
   std::filesystem::path curves;  ///< SVG; the picture itself where that is an SVG and this is empty
+  std::filesystem::path plate;   ///< under the warped picture; empty: nothing
   std::filesystem::path start;   ///< a lattice to go on from; empty: from the beginning
   std::filesystem::path output, report;  ///< empty: not written, as the next
   std::filesystem::path overlay, checkerboard, jacobian, page;

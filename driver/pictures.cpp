@@ -7,6 +7,7 @@
 #include "canvas.h"
 #include "field_pictures.h"
 #include "overlay.h"
+#include "plate.h"
 #include "render.h"
 #include "stopwatch.h"
 
@@ -52,6 +53,7 @@ class Pictures {
             picture.pixels.begin() + (std::ptrdiff_t(y) * picture.width() + past) * channels;
         std::copy_n(first, width * channels, row.begin() + from * channels);
       }
+      if (task_.plate) lay_over(*task_.plate, frame, y - frame.top, row);
       canvas.add_rows(spec, picture.linear(), row);
     }
     page.before = canvas.png();
@@ -94,6 +96,7 @@ class Pictures {
     const int step = band_rows(frame.width);
     for (int top = 0; top < frame.height; top += step) {
       std::vector<float> rows = renderer.rows(top, std::min(step, frame.height - top));
+      if (task_.plate) lay_over(*task_.plate, frame, top, rows);
       if (overlay) overlay->add_rows(renderer.spec(), linear, rows);
       if (small) small->add_rows(renderer.spec(), linear, rows);
       seconds_.render += watch_.lap();

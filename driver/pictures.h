@@ -2,8 +2,8 @@
 #pragma once
 // All pictures of a run. The warped picture is made once, in bands of rows that go to its file and
 // to the pictures that show it; beside the source picture (4 bytes a value, and a third more where
-// the warp folds or compresses strongly) a band is held, and for one picture at a time that lines
-// are drawn on, 4 bytes a pixel.
+// the warp folds or compresses strongly) and the plate, if there is one, a band is held, and for
+// one picture at a time that lines are drawn on, 4 bytes a pixel.
 #include <drumhead/kernels/resample.h>
 #include <drumhead/multigrid/warp.h>
 #include <filesystem>
@@ -34,6 +34,7 @@ struct PictureTask {
   Frame frame;
   kernels::Border border = kernels::Border::clamp;
   int threads = 0;
+  const Image* plate = nullptr;  ///< under the picture and the warped one
 };
 
 /// Writes what `files` names and, where `page` is not null, makes its pictures. Adds to

@@ -15,6 +15,7 @@
 #include "masks.h"
 #include "page.h"
 #include "pictures.h"
+#include "plate.h"
 #include "progress.h"
 #include "render.h"
 #include "report.h"
@@ -56,7 +57,7 @@ void check_files(Options& options) {
         "no output: give -o OUT or another file to write (see drumhead --help)");
   }
   for (auto file = outputs.begin(); file != outputs.end(); ++file) {
-    for (const fs::path& input : {options.picture, options.curves, options.scene,
+    for (const fs::path& input : {options.picture, options.curves, options.plate, options.scene,
                                   options.mu_mask.file, options.kappa_mask.file, options.start}) {
       if (!input.empty() && same_file(*file, input)) {
         throw std::invalid_argument(file->string() + ": an output must not replace an input");
@@ -186,6 +187,8 @@ int run_warp(Options options) {
   Outputs outputs(options);
 
   const Image picture = read_picture(options, progress);
+  std::optional<Image> plate;
+  if (!options.plate.empty()) plate = read_plate(options.plate, picture);
   const SvgCurves drawing =
       read_curves(SvgDocument(options.curves), picture.width(), picture.height());
   for (const std::string& warning : drawing.warnings) progress.warn(warning);
@@ -200,7 +203,8 @@ int run_warp(Options options) {
   watch.lap();
 
   PagePictures page;
-  make_pictures({picture, solution, drawing.curves, frame, options.border, options.threads},
+  make_pictures({picture, solution, drawing.curves, frame, options.border, options.threads,
+                 plate ? &*plate : nullptr},
                 {.output = outputs.wanted(options.output),
                  .overlay = outputs.wanted(options.overlay),
                  .checkerboard = outputs.wanted(options.checkerboard),

@@ -3,7 +3,7 @@ drumhead_test(NAME driver_test
   SOURCES driver_scratch.cpp driver_svg_test.cpp driver_scene_test.cpp driver_image_test.cpp
     driver_atomic_file_test.cpp driver_command_test.cpp driver_masks_test.cpp driver_maps_test.cpp
     driver_lattice_files_test.cpp
-    driver_pictures_test.cpp
+    driver_pictures_test.cpp driver_plate_test.cpp
   LINK drumhead_driver
   LABEL unit)
 drumhead_test(NAME driver_warp_test

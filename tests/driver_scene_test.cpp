@@ -35,6 +35,7 @@ TEST(DriverScene, EveryKeyIsRead) {
   const auto file = scratch.write("scene.toml", R"(
 picture = "a.jpg"
 curves = "sub/b.svg"
+plate = "sub/c.png"
 cells = 100
 margin = 0
 model = "harmonic"
@@ -63,6 +64,7 @@ weight = "inf"
   read_scene(file, o);
   EXPECT_EQ(o.picture, scratch / "a.jpg");
   EXPECT_EQ(o.curves, scratch / "sub/b.svg");
+  EXPECT_EQ(o.plate, scratch / "sub/c.png");
   EXPECT_EQ(o.lattice.cells, 100);
   EXPECT_EQ(o.lattice.margin, 0);
   EXPECT_EQ(o.model, kernels::Model::harmonic);
@@ -127,7 +129,7 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
             "curve_method = 'cut': must be one of: automatic, averaged, conforming"},
            {"overlay = \"a.jpg\"", "overlay = 'a.jpg': must be the path of a .png file"},
            {"output = \"\"", "output = '': must be the path of a file"},
-           {"kapa = 1", "scene.toml:1: kapa = 1: unknown key; a scene has picture, curves, cells"},
+           {"kapa = 1", "scene.toml:1: kapa = 1: unknown key; a scene has picture, curves, plate, cells"},
            {"[kappa]\na = 1", "scene.toml:1: kappa: must be a number"},
            {"mu = [1, 2]", "scene.toml:1: mu: must be"},
            {"mu = 1\nmu = 2", "scene.toml:2: "},

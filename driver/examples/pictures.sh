@@ -1,12 +1,12 @@
 #!/bin/sh
-# Draws driver/examples/pictures again, which the READMEs show: 640 pixels wide, 256 colours.
+# Draws driver/examples/pictures again, which the READMEs show: 640 pixels wide.
 #     sh driver/examples/pictures.sh                 all scenes
 #     sh driver/examples/pictures.sh face sponge     only these
-# Wants the Debian package pngquant beside those of driver/demo.sh, which it runs first.
+# Wants the Debian package optipng beside those of driver/demo.sh, which it runs first.
 set -eu
 cd "$(dirname "$0")/../.."
-command -v pngquant >/dev/null || {
-  echo "driver/examples/pictures.sh: needs pngquant (apt-get install pngquant)" >&2
+command -v optipng >/dev/null || {
+  echo "driver/examples/pictures.sh: needs optipng (apt-get install optipng)" >&2
   exit 1
 }
 sh driver/demo.sh "$@"
@@ -16,9 +16,8 @@ mkdir -p "$examples/pictures"
 [ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//' | sort)
 # small FROM TO
 small() {
-  oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 640x0 -d uint8 -o "build/demo/small.png"
-  pngquant --force --strip --speed 1 --output "$2" 256 build/demo/small.png
-  rm build/demo/small.png
+  oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 640x0 -d uint8 -o "$2"
+  optipng -quiet -o3 -strip all "$2"
 }
 for scene in "$@"; do
   # A scene that has no drawing of its own shares the picture before with the one whose it is.
