@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "resample_boxes.h"
+#include "resample_check.h"
 #include "resample_filter.h"
 #include "resample_footprint.h"
 #include "resample_inverse.h"
@@ -17,13 +17,6 @@
 
 namespace drumhead::kernels {
 namespace {
-
-void check(const LatticeMapView& map) {
-  assert(map.u && map.v && map.nx >= 1 && map.ny >= 1 && map.cell_px > 0.0);
-  assert(std::size_t(map.nx) * std::size_t(map.ny) <
-         std::size_t(std::numeric_limits<std::int32_t>::max()));
-  static_cast<void>(map);
-}
 
 // Inverts the rectangle tile by tile and hands each to use(tile, a, b), (a, b) its first pixel's
 // place in the rectangle.
@@ -104,10 +97,8 @@ struct Resampler::State {
 Resampler::Resampler(const ImageView& source, const LatticeMapView& map,
                      const ResampleOptions& options) {
   check(map);
-  assert(source.data && source.width >= 1 && source.height >= 1 && source.channels >= 1);
-  assert(source.row_stride >= std::ptrdiff_t(source.width) * source.channels);
-  assert(options.detail >= 1.0 && options.detail <= 16.0);
-  assert(options.anisotropy >= 1.0 && options.anisotropy <= 64.0);
+  check(source);
+  check(options);
   const FilterBounds bounds{float(options.detail), float(options.anisotropy)};
   state_ = std::make_unique<State>(
       State{map, bounds, options.threads, BoxTree(map), Pyramid(source, options.border)});
@@ -119,7 +110,7 @@ Resampler::Resampler(Resampler&&) noexcept = default;
 Resampler& Resampler::operator=(Resampler&&) noexcept = default;
 
 void Resampler::render(const ImageTarget& out) const {
-  assert(out.channels == state_->pyramid.level(0).channels);
+  check(out, state_->pyramid.level(0).channels);
   for_each_tile(state_->map, state_->tree, out, state_->threads,
                 [&](const TileMap& tile, int a, int b) {
                   float* first = out.data + b * out.row_stride + std::ptrdiff_t(a) * out.channels;
@@ -131,6 +122,8 @@ std::size_t Resampler::bytes() const { return state_->tree.bytes() + state_->pyr
 
 void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int threads) {
   check(map);
+  check_rectangle(out.width, out.height, out.row_stride, 1);
+  check_threads(threads);
   const BoxTree tree(map);
   const ImageTarget rectangle{nullptr, out.width, out.height, 0, 0, out.left, out.top};
   for_each_tile(map, tree, rectangle, threads, [&](const TileMap& tile, int a, int b) {
@@ -181,9 +174,7 @@ InTriangle nearest_triangle(const LatticeMapView& map, int i, int j, Position re
   return best;
 }
 
-}  // namespace
-
-Position forward_position(const LatticeMapView& map, Position rest_px) {
+Position position_in(const LatticeMapView& map, Position rest_px) {
   const double s = (rest_px.x - map.origin_px.x) / map.cell_px;
   const double t = (rest_px.y - map.origin_px.y) / map.cell_px;
   if (!(s >= 0.0 && s <= map.nx && t >= 0.0 && t <= map.ny)) return rest_px;
@@ -205,12 +196,21 @@ Position forward_position(const LatticeMapView& map, Position rest_px) {
   return {rest_px.x + blend(map.u), rest_px.y + blend(map.v)};
 }
 
+}  // namespace
+
+Position forward_position(const LatticeMapView& map, Position rest_px) {
+  check(map);
+  return position_in(map, rest_px);
+}
+
 void forward_map(const LatticeMapView& map, const ForwardMapTarget& out, int threads) {
   check(map);
+  check(out);
+  check_threads(threads);
   for_each_task(out.height, threads, [&](int b, int) {
     Position* row = out.output + b * out.row_stride;
     for (int a = 0; a < out.width; ++a) {
-      row[a] = forward_position(map, {out.left + a + 0.5, out.top + b + 0.5});
+      row[a] = position_in(map, {out.left + a + 0.5, out.top + b + 0.5});
     }
   });
 }

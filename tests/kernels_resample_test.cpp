@@ -10,6 +10,7 @@
 
 #include <drumhead/kernels/resample.h>
 
+#include "support/refusal.h"
 #include "support/warped_lattice.h"
 
 namespace drumhead::tests {
@@ -324,6 +325,53 @@ TEST(Resample, HostileLatticesGiveFinitePictures) {
       }
     }
   }
+}
+
+TEST(ResampleRefusal, NamesValueAndBound) {
+  const Picture picture = noise(6, 5, 3, 1);
+  const WarpedLattice lattice = at_rest(3, 2, 2.0, {0.0, 0.0});
+  const auto made = [&](auto change) {
+    kernels::ImageView source = picture.view();
+    kernels::LatticeMapView map = lattice.view();
+    kernels::ResampleOptions options;
+    change(source, map, options);
+    return refusal([&] { kernels::Resampler(source, map, options); });
+  };
+  EXPECT_EQ(made([](auto&, auto&, auto&) {}), "accepted");
+  EXPECT_EQ(made([](auto& source, auto&, auto&) { source.channels = 0; }),
+            "channels of the source = 0: must be at least 1");
+  EXPECT_EQ(made([](auto& source, auto&, auto&) { source.row_stride = 17; }),
+            "row_stride of the source = 17: must be at least width·channels = 18");
+  EXPECT_EQ(made([](auto& source, auto&, auto&) { source.data = nullptr; }),
+            "data of the source = null: must be an array");
+  EXPECT_EQ(made([](auto&, auto& map, auto&) { map.nx = 0; }),
+            "nx of the lattice map = 0: must be at least 1");
+  EXPECT_EQ(made([](auto&, auto& map, auto&) { map.cell_px = -0.5; }),
+            "cell_px of the lattice map = -0.500000: must be positive and finite");
+  EXPECT_EQ(made([](auto&, auto& map, auto&) { map.v = nullptr; }),
+            "v of the lattice map = null: must be an array");
+  EXPECT_EQ(made([](auto&, auto&, auto& options) { options.detail = 17.0; }),
+            "detail = 17.000000: must be 1…16");
+  EXPECT_EQ(made([](auto&, auto&, auto& options) { options.threads = -1; }),
+            "threads = -1: must be at least 0");
+}
+
+TEST(ResampleRefusal, LeavesTheTargetAsItWas) {
+  const Picture picture = noise(6, 5, 3, 1);
+  const WarpedLattice lattice = at_rest(3, 2, 2.0, {0.0, 0.0});
+  const kernels::Resampler resampler(picture.view(), lattice.view());
+  Picture out(6, 5, 4);
+  EXPECT_EQ(refusal([&] { resampler.render(out.target()); }),
+            "channels of the target = 4: must be the source's 3");
+  for (const float value : out.data) EXPECT_EQ(value, 0.0f);
+  EXPECT_EQ(refusal([&] {
+              kernels::forward_map(lattice.view(), {.width = 2, .height = 2, .row_stride = 2});
+            }),
+            "output of the target = null: must be an array");
+  EXPECT_EQ(refusal([&] {
+              kernels::backward_map(lattice.view(), {.width = 2, .height = 2, .row_stride = 1});
+            }),
+            "row_stride of the target = 1: must be at least 2");
 }
 
 }  // namespace

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a function says when it refuses its input.
+// What is said of bad input.
 #include <stdexcept>
 #include <string>
 
-namespace drumhead {
+namespace drumhead::tests {
 
-/// The text of the std::invalid_argument that body throws, empty if it throws none.
-template <class F>
-std::string refusal_of(F&& body) {
+/// The message with which `action` is refused as bad input; "accepted" if it is not.
+template <class Action>
+std::string refusal(const Action& action) {
   try {
-    body();
+    action();
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
-  return {};
+  return "accepted";
 }
 
-}  // namespace drumhead
+}  // namespace drumhead::tests

@@ -28,6 +28,9 @@
 // costs at most about 64 detail² anisotropy taps. Where the displacement is zero, or the same
 // whole number of pixels, the source pixel is returned bit for bit.
 //
+// Sizes, strides, options and arrays outside the bounds named here throw std::invalid_argument,
+// naming value and bound, before anything is written.
+//
 // Channels are interleaved and filtered alike: premultiply alpha and linearise before, undo it
 // afterwards.
 #include <cstddef>
@@ -127,14 +130,14 @@ struct ResampleOptions {
   /// Greatest σ1/σ2 of a footprint, 1…64; σ2 is enlarged (blur across, never aliasing along) beyond
   /// it.
   double anisotropy = 16.0;
-  int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides. The result does not depend on it.
+  int threads = 0;  ///< ≥ 0, OpenMP threads; 0: as OpenMP decides. Results do not depend on it.
 };
 
 /// Renders one picture through one lattice; both must outlive it. The constructor allocates the
 /// boxes of 4 × 4 cells (3 bytes a cell) and, only if the lattice folds or compresses beyond 2
 /// detail somewhere, the pyramid: a third of the picture. `render` allocates 0.2 MB a thread,
-/// whatever the size of the picture. Beyond std::bad_alloc nothing is thrown; sizes and options
-/// outside the bounds above are the caller's mistake (asserted).
+/// whatever the size of the picture. Both throw std::bad_alloc, and std::invalid_argument for bad
+/// input.
 class Resampler {
  public:
   Resampler(const ImageView& source, const LatticeMapView& map,
