@@ -2,11 +2,12 @@
 #include "restart.h"
 
 #include <algorithm>
-
+#include <cmath>
 #include <limits>
-#include "volume_gap.h"
+#include <stdexcept>
 
 #include "conforming_visits.h"
+#include "volume_gap.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -18,6 +19,29 @@ constexpr double kShare = 0.1;
 constexpr double kContent = 0.5;
 // A small change is nearly linear: what the first step leaves is what its linear solution leaves.
 constexpr double kFirstRate = 0.35;
+
+[[noreturn]] void refuse(const std::string& what, const std::string& bound) {
+  throw std::invalid_argument("the solution to start from: " + what + ": must be " + bound);
+}
+
+void check_values(const char* what, const std::vector<double>& values, std::size_t wanted) {
+  if (values.size() != wanted)
+    refuse(std::to_string(values.size()) + " values of " + what, std::to_string(wanted));
+  const auto wrong = std::ranges::find_if_not(values, [](double x) { return std::isfinite(x); });
+  if (wrong != values.end())
+    refuse(std::string(what) + "[" + std::to_string(wrong - values.begin()) +
+               "] = " + std::to_string(*wrong),
+           "finite");
+}
+
+/// `begin` are indices into a list of `count`, from 0 on, ascending.
+void check_ranges(const char* what, const std::vector<int>& begin, std::size_t lists,
+                  std::size_t count) {
+  if (begin.size() != lists + 1 || begin.front() != 0 || std::size_t(begin.back()) != count ||
+      !std::ranges::is_sorted(begin))
+    refuse(std::string("split.") + what + " of " + std::to_string(begin.size()) + " indices",
+           std::to_string(lists + 1) + ", ascending from 0 to " + std::to_string(count));
+}
 
 template <class T>
 void set_state(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, const Solution& start) {
@@ -97,6 +121,32 @@ void clear_state(Level<T>& level) {
 }
 
 }  // namespace
+
+void check_start(const Solution& start, const grid::Lattice& lattice) {
+  const grid::Lattice& own = start.lattice;
+  const auto cells = [](const grid::Lattice& l) {
+    return std::to_string(l.nx) + " × " + std::to_string(l.ny) + " cells of " +
+           std::to_string(l.cell_px) + " px from (" + std::to_string(l.origin_px.x) + ", " +
+           std::to_string(l.origin_px.y) + ")";
+  };
+  if (own.nx != lattice.nx || own.ny != lattice.ny || own.cell_px != lattice.cell_px ||
+      !(own.origin_px == lattice.origin_px))
+    refuse(cells(own), "on the problem's own lattice, " + cells(lattice));
+  check_values("u_px", start.u_px, lattice.nodes());
+  check_values("v_px", start.v_px, lattice.nodes());
+  if (!start.pressure.empty()) check_values("pressure", start.pressure, lattice.cells());
+  for (const CurveForce& force : start.forces)
+    if (!std::isfinite(force.q.x) || !std::isfinite(force.q.y))
+      refuse("q of cell (" + std::to_string(force.i) + ", " + std::to_string(force.j) + ") = (" +
+                 std::to_string(force.q.x) + ", " + std::to_string(force.q.y) + ")",
+             "finite");
+  const SplitCells& split = start.split;
+  if (split.column.empty()) return;
+  check_ranges("row_begin", split.row_begin, std::size_t(lattice.ny), split.column.size());
+  check_ranges("triangle_begin", split.triangle_begin, split.column.size(), split.triangle.size());
+  if (!split.pressure.empty())
+    check_values("split.pressure", split.pressure, split.triangle.size());
+}
 
 template <class T>
 std::vector<CurveForce> curve_forces(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts) {

@@ -9,6 +9,10 @@
 
 namespace drumhead::multigrid {
 
+/// Throws std::invalid_argument, naming value and bound, where `start` is not a finite solution on
+/// this lattice.
+void check_start(const Solution& start, const grid::Lattice& lattice);
+
 /// Forces that the curves of `cuts` exert at the finest level's state, cell by cell.
 template <class T>
 std::vector<CurveForce> curve_forces(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts);

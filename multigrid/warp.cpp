@@ -45,20 +45,22 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
   if (lattice.nx < 1 || lattice.ny < 1)
     throw std::invalid_argument("lattice of " + std::to_string(lattice.nx) + " × " +
                                 std::to_string(lattice.ny) + " cells: must be at least 1 × 1");
-  if (!(lattice.cell_px > 0.0) || !(lattice.side_px > 0.0))
-    throw std::invalid_argument("lattice cell and picture side must be positive");
+  const auto positive = [](const char* what, double value) {
+    if (!(value > 0.0) || !std::isfinite(value))
+      throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) +
+                                  ": must be positive and finite");
+  };
+  positive("cell_px of the lattice", lattice.cell_px);
+  positive("side_px of the lattice", lattice.side_px);
+  if (!std::isfinite(lattice.origin_px.x) || !std::isfinite(lattice.origin_px.y))
+    throw std::invalid_argument("origin_px of the lattice = (" +
+                                std::to_string(lattice.origin_px.x) + ", " +
+                                std::to_string(lattice.origin_px.y) + "): must be finite");
   grid::check(problem.material, lattice);
   if (!(options.tolerance_px >= 0.0) || !std::isfinite(options.tolerance_px))
     throw std::invalid_argument("tolerance = " + std::to_string(options.tolerance_px) +
                                 ": must be at least 0 and finite");
-  if (options.start) {
-    const grid::Lattice& other = options.start->lattice;
-    if (other.nx != lattice.nx || other.ny != lattice.ny || other.cell_px != lattice.cell_px ||
-        !(other.origin_px == lattice.origin_px) || options.start->u_px.size() != lattice.nodes())
-      throw std::invalid_argument("the solution to start from is on a lattice of " +
-                                  std::to_string(other.nx) + " × " + std::to_string(other.ny) +
-                                  " cells: must be on the problem's own");
-  }
+  if (options.start) check_start(*options.start, lattice);
   const kernels::Model model = problem.material.model;
   if (kernels::isotropic(model) && options.solver != Solver::gcr)
     throw std::invalid_argument("solver " + std::string(name(options.solver)) + ": must be " +

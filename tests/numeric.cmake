@@ -45,6 +45,10 @@ drumhead_test(NAME stability_memory_test
 drumhead_test(NAME stability_conforming_test
   SOURCES stability_conforming_test.cpp LINK drumhead_conforming_oracle LABEL numeric)
 
+drumhead_test(NAME multigrid_warp_test
+  SOURCES multigrid_warp_test.cpp support/scene_problem.cpp
+  LINK drumhead_oracle drumhead::multigrid LABEL numeric)
+
 # It looks inside: the cycle is not part of the public headers.
 drumhead_test(NAME multigrid_allocation_test
   SOURCES multigrid_allocation_test.cpp support/scene_problem.cpp
