@@ -42,7 +42,9 @@ round_trip_px is the distance of forward(backward(pixel)) from the pixel, throug
 and (sampled) through the forward map's pixels.
 
 Exit code. 0 converged; 1 not converged, the best result is written; 2 bad input, nothing is
-written.
+written. An interrupt (Ctrl-C) while the membrane is solved ends that after the step that it is at,
+and what there is is written; a second one, or one at another time, ends the program and leaves
+nothing.
 )";
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {

@@ -65,8 +65,11 @@ void Progress::summarise(const multigrid::Solution& solution, const Seconds& sec
       "%.0f work units\n",
       multigrid::name(report.status), seconds.total, seconds.read, seconds.cut, seconds.solve,
       seconds.render, seconds.write, solution.lattice.nx, solution.lattice.ny, report.work_units);
-  std::fprintf(stderr, "estimated error %.2f px RMS (solver %.3f px)", report.discretisation_rms_px,
-               report.algebraic_rms_px);
+  if (std::isfinite(report.discretisation_rms_px))
+    std::fprintf(stderr, "estimated error %.2f px RMS (solver %.3f px)",
+                 report.discretisation_rms_px, report.algebraic_rms_px);
+  else
+    std::fputs("error not known", stderr);
   const auto worst =
       std::ranges::max_element(report.curves, {}, &multigrid::CurveReport::gap_max_px);
   if (worst != report.curves.end()) {
@@ -106,6 +109,8 @@ const char* in_words(multigrid::Status status) {
       return "infeasible: the hard curves contradict one another";
     case multigrid::Status::limit:
       return "the limit of steps came before the tolerance was reached";
+    case multigrid::Status::cancelled:
+      return "interrupted";
     case multigrid::Status::not_finite:
       return "a number that is not finite appeared";
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report.h"
 
+#include <drumhead/kernels/model.h>
 #include <sys/resource.h>
 #include <cmath>
 #include <fstream>
@@ -79,15 +80,14 @@ Json maps_json(const MapReport& maps) {
 
 }  // namespace
 
-std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Frame& frame, const Seconds& seconds,
-                        const std::optional<MapReport>& maps) {
+std::string report_json(const multigrid::Solution& solution, const Frame& frame,
+                        const Seconds& seconds, const std::optional<MapReport>& maps) {
   const multigrid::SolveReport& report = solution.report;
   const grid::Lattice& lattice = solution.lattice;
   const multigrid::EnergyReport& energy = report.energy;
   Json json = {{"version", DRUMHEAD_VERSION},
                {"status", multigrid::name(report.status)},
-               {"model", model},
+               {"model", kernels::name(report.model)},
                {"exact", report.exact},
                {"solver", multigrid::name(report.solver)},
                {"curve_method", multigrid::name(report.curve_method)},

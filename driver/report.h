@@ -21,11 +21,9 @@ struct MapReport {
   RoundTrip round_trip;
 };
 
-/// `model` as the user named it, `frame` the pixels of the warped picture; the key "maps" is there
-/// only with `maps`.
-std::string report_json(const multigrid::Solution& solution, const std::string& model,
-                        const Frame& frame, const Seconds& seconds,
-                        const std::optional<MapReport>& maps);
+/// `frame`: the pixels of the warped picture; the key "maps" is there only with `maps`.
+std::string report_json(const multigrid::Solution& solution, const Frame& frame,
+                        const Seconds& seconds, const std::optional<MapReport>& maps);
 
 /// Throws std::runtime_error naming `file`.
 void write_text(const std::string& text, const std::filesystem::path& file);

@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "curve_settings.h"
 #include "image.h"
+#include "interrupt.h"
 #include "lattice_files.h"
 #include "masks.h"
 #include "page.h"
@@ -167,7 +168,11 @@ multigrid::Solution solve(const Options& options, const multigrid::WarpProblem& 
                                   .start = start ? &*start : nullptr,
                                   .threads = options.threads,
                                   .progress = {}};
-  solver.progress = [&](const multigrid::Progress& at) { progress.show(at); };
+  const SolveInterrupt interrupt;
+  solver.progress = [&](const multigrid::Progress& at) {
+    progress.show(at);
+    return !interrupt.asked();
+  };
   progress.show("cutting " + std::to_string(problem.curves.size()) + " curves");
   multigrid::Solution solution = multigrid::solve(problem, solver);
   if (start && solution.report.levels.size() > 1)
@@ -217,8 +222,7 @@ int run_warp(Options options) {
   const auto maps = write_maps(options, picture, frame, solution, outputs, progress);
   seconds.write += watch.lap();
   seconds.total = whole.lap();
-  const std::string report =
-      report_json(solution, std::string(name(options.model)), frame, seconds, maps);
+  const std::string report = report_json(solution, frame, seconds, maps);
   if (!options.report.empty()) write_text(report, outputs[options.report]);
   if (!options.page.empty()) {
     write_text(page_html(options.picture.filename(), report, page), outputs[options.page]);

@@ -37,6 +37,8 @@ const char* name(Status status) {
       return "infeasible";
     case Status::limit:
       return "limit";
+    case Status::cancelled:
+      return "cancelled";
     case Status::not_finite:
       return "not_finite";
   }

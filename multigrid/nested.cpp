@@ -29,6 +29,8 @@ constexpr double kOnset = 0.02, kCoarseOnset = 0.1;
 constexpr int kLevelSteps = 20, kFinestSteps = 40;
 constexpr int kPathSteps = 12;
 constexpr int kStepsPerPathStep = 4;
+// Shares of a level's progress: the way to its first state, and exact rows with their jump.
+constexpr double kPathShare = 0.5, kJumpShare = 0.7;
 // Error left on levels that only start the next one, and on the finest: share of the estimated
 // discretisation error.
 constexpr double kShare = 0.1;
@@ -108,7 +110,7 @@ LinearOptions linear_options(const Level<T>& level, bool start, bool gentle) {
 /// The last steps of exact constraints, from the solution `with_jump`, until no node moves.
 template <class T>
 NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
-                          NewtonReport with_jump, const std::function<void(int)>& progress) {
+                          NewtonReport with_jump, const LevelProgress& progress) {
   hierarchy.drop_jump(kTraceOfJump);
   const bool small = hierarchy[0].nodes() < kSmallNodes;
   NewtonOptions options;
@@ -145,14 +147,14 @@ namespace {
 /// last. At once, stiff scenes end in worse minima, or nowhere (S2 turned by 135°, kappa 1e4).
 template <class T>
 void stiffen(const NestedOptions& options, NewtonOptions newton_options, Newton<T>& newton,
-             ClampSchedule& clamp) {
+             ClampSchedule& clamp, const LevelProgress& progress) {
   clamp.patience = kPatience;
   newton_options.linear.content = newton_options.linear.reduction = kExactReduction;
   newton_options.adaptive = true;
   const double last = std::min(options.largest_kappa, kMostLimit);
   for (double kappa = kFirstKappa; kappa < last; kappa *= kKappaGrows) {
     options.limit_kappa(kappa);
-    newton.run(newton_options, clamp, {});
+    newton.run(newton_options, clamp, progress);
     clamp.theta = 1.0;
   }
   options.limit_kappa(options.largest_kappa);
@@ -161,7 +163,8 @@ void stiffen(const NestedOptions& options, NewtonOptions newton_options, Newton<
 /// The first state on the start level: harmonic, and for large rotations on along the load path.
 template <class T>
 void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
-                const NewtonOptions& newton_options, Newton<T>& newton, ClampSchedule& clamp) {
+                const NewtonOptions& newton_options, Newton<T>& newton, ClampSchedule& clamp,
+                const LevelProgress& progress) {
   LinearOptions harmonic = newton_options.linear;
   harmonic.content = harmonic.reduction = kHarmonic;
   if (!options.set_targets) {
@@ -175,10 +178,22 @@ void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options
     part.most_steps = kStepsPerPathStep;
     part.tolerance_rms = 0.05 * double(hierarchy[start].spacing);
     clamp = {};
-    newton.run(part, clamp, {});
+    newton.run(part, clamp, part_of(progress, double(n - 1) / kPathSteps, double(n) / kPathSteps));
   }
   options.set_targets(start, 1.0);
   clamp = {};
+}
+
+bool ended_early(Status status) {
+  return status == Status::not_finite || status == Status::cancelled;
+}
+
+/// Takes level l's state, the last that there is, to the finest lattice. What it was found to lack
+/// on its own says nothing there.
+template <class T>
+void end_early(Hierarchy<T>& hierarchy, int l, SolveReport& report) {
+  if (l > 0 || report.status == Status::cancelled) forget_errors(report);
+  while (--l >= 0) hierarchy.prolong_state(l);
 }
 
 /// What every level is asked for.
@@ -222,6 +237,11 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
 
 }  // namespace
 
+void forget_errors(SolveReport& report) {
+  report.algebraic_rms_px = report.algebraic_max_px = report.discretisation_rms_px =
+      report.discretisation_max_px = report.volume_gap = std::numeric_limits<double>::quiet_NaN();
+}
+
 template <class T>
 void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
                       grid::MemoryMeter& meter, SolveReport& report) {
@@ -231,19 +251,16 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
   std::vector<LevelChange> changes;
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
-    auto progress = [&](int step) {
-      // Work falls by four per level; the finest level is about three quarters of the whole.
-      if (options.progress)
-        options.progress(
-            {level.nx, level.ny, step, std::pow(0.25, l) * std::min(1.0, 0.25 + 0.25 * step)});
-    };
+    const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, start);
     Newton<T> newton(hierarchy, l, meter);
     std::optional<LevelCopy<T>> coarse;
     set_options(hierarchy, l, l == start, options, newton_options);
     if (l == start) {
       if (options.limit_kappa) options.limit_kappa(kFirstKappa);
-      find_start(hierarchy, start, options, newton_options, newton, clamp);
-      if (options.limit_kappa) stiffen(options, newton_options, newton, clamp);
+      find_start(hierarchy, start, options, newton_options, newton, clamp,
+                 part_of(progress, 0.0, kPathShare));
+      if (options.limit_kappa)
+        stiffen(options, newton_options, newton, clamp, part_of(progress, kPathShare, kPathShare));
     } else {
       // What a finer level changes is small: the positive definite Hessian does, until it does not.
       clamp.theta = 1.0;
@@ -251,11 +268,15 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
       hierarchy.prolong_state(l);
     }
     set_accuracy(level, l == 0, l == start, options, newton_options);
-    NewtonReport done = newton.run(newton_options, clamp, progress);
+    const bool way = l == start && (options.set_targets || options.limit_kappa);
+    const bool exact = l == 0 && options.exact;
+    NewtonReport done = newton.run(
+        newton_options, clamp, part_of(progress, way ? kPathShare : 0.0, exact ? kJumpShare : 1.0));
     newton_options.least_rate = hierarchy.traits().stiffness >= kStiff ? kStiffRate : 0.0;
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
-    if (l == 0 && options.exact && done.status != Status::not_finite)
-      done = without_jump(hierarchy, options.solver, newton, std::move(done), progress);
+    if (exact && !ended_early(done.status))
+      done = without_jump(hierarchy, options.solver, newton, std::move(done),
+                          part_of(progress, kJumpShare, 1.0));
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
@@ -272,7 +293,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.discretisation_rms_px = share * change.rms * cell_px;
     report.discretisation_max_px = share * change.max * cell_px;
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
-    if (report.status == Status::not_finite) return;
+    if (ended_early(report.status)) return end_early(hierarchy, l, report);
   }
   note_areas(report);
 }

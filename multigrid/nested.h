@@ -25,11 +25,14 @@ struct NestedOptions {
   /// kappa that there is.
   std::function<void(double most)> limit_kappa;
   double largest_kappa = 0.0;
-  std::function<void(const Progress&)> progress;
+  std::function<bool(const Progress&)> progress;
 };
 
 /// The steps of one level, their moves in pixels.
 LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell_px);
+
+/// Errors and volume_gap as unknown, not a number.
+void forget_errors(SolveReport& report);
 
 /// Solves on all levels of the hierarchy from zero; fills status, levels and errors of the report
 /// (converted to pixels by cell_px). The state is left in hierarchy[0].

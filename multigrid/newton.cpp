@@ -311,7 +311,7 @@ void Newton<T>::adapt(ClampSchedule& clamp, const NewtonStep& step, bool shorten
 
 template <class T>
 NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
-                            const std::function<void(int)>& progress) {
+                            const LevelProgress& progress) {
   NewtonReport report;
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
@@ -323,7 +323,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   norm_ = force_norm(level_.nonlinear());
   corners.moved_to(norm_);
   for (int n = 0; n < options.most_steps; ++n) {
-    if (progress) progress(n + 1);
+    if (progress && !progress(n + 1, judge.share_done())) {
+      report.status = Status::cancelled;
+      return report;
+    }
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
     const bool areas = judge.only_areas_lack();

@@ -9,6 +9,7 @@
 #include <drumhead/multigrid/warp.h>
 
 #include "krylov.h"
+#include "progress_line.h"
 
 namespace drumhead::multigrid {
 
@@ -76,9 +77,9 @@ class Newton {
   /// Largest |b − W u − M q| of a curve row at the current state, in finest cells.
   double largest_row_gap();
 
-  /// Steps from the current state of the level.
+  /// Steps from the current state of the level, until it is solved or `progress` stops it.
   NewtonReport run(const NewtonOptions& options, ClampSchedule& clamp,
-                   const std::function<void(int step)>& progress);
+                   const LevelProgress& progress);
 
  private:
   void set_force(bool pressure);

@@ -3,6 +3,7 @@
 // When a run of Newton's method ends: its own header because the rules are many, and each was
 // learnt from a scene.
 #include <algorithm>
+#include <cmath>
 
 #include "newton.h"
 
@@ -23,6 +24,7 @@ class Judge {
     report_.volume_gap = volume_gap;
     if (only_areas_lack_) {
       report_.steps.push_back(step);
+      advance(rounding);
       // Solved, and no better: curves and areas contradict one another.
       const bool in_vain = step.residual <= kUnsolved && volume_gap > kInVain * gap_before;
       only_areas_lack_ = step.step > 0.0 && !areas_done();
@@ -49,6 +51,7 @@ class Judge {
     const double left = std::max(rate, step.residual) / (1.0 - rate);
     report_.error_rms = left * step.dx_rms_px;
     report_.error_max = left * step.dx_max_px;
+    advance(rounding);
     // Soon after a step was shortened or theta lowered, one small step may be chance.
     calm_ = full && comparable ? calm_ + 1 : 0;
     settled_ = full && comparable && solved && small(step, rounding) ? settled_ + 1 : 0;
@@ -63,6 +66,10 @@ class Judge {
   /// rows) alone, without the momentum that drives the slow rest. Ends with the run or a step of 0.
   bool only_areas_lack() const { return only_areas_lack_; }
 
+  /// The share of the run that is done, as the logarithm of the error that is left tells it: 0 for
+  /// the first step's move, 1 for the error wanted. Never falls, and stays below 1.
+  double share_done() const { return share_; }
+
  private:
   // So many steps in a row from linear solutions that bad lead nowhere. Solvers other than gcr,
   // whose cycles stop where Newton's method gains no more from them, were asked for a tenth.
@@ -76,6 +83,9 @@ class Judge {
   static constexpr int kMostCreeping = 5;
   // Share of the volume gap that a step for areas leaves if it is of no use.
   static constexpr double kInVain = 0.9;
+  // What each step takes at least of the share that is not done, and where the error's part ends:
+  // areas, corners or a second small step may be wanting.
+  static constexpr double kLeastShare = 0.06, kMostShare = 0.8;
   // So many full steps make up for a shortened one.
   static constexpr int kCalm = 10;
 
@@ -95,15 +105,24 @@ class Judge {
     return std::clamp(rate, kLeastRate, kMostRate);
   }
 
+  double wanted(double rounding) const {
+    const double wanted = options_.tolerance_rms;
+    if (options_.share_of_change <= 0.0) return wanted;
+    return std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
+  }
   bool small(const NewtonStep& step, double rounding) const {
-    double wanted = options_.tolerance_rms;
-    if (options_.share_of_change > 0.0)
-      wanted = std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
-    return report_.error_rms <= wanted &&
+    return report_.error_rms <= wanted(rounding) &&
            (options_.tolerance_max == 0.0 || step.dx_max_px <= options_.tolerance_max);
   }
   bool areas_done() const {
     return options_.most_volume_gap == 0.0 || report_.volume_gap <= options_.most_volume_gap;
+  }
+  void advance(double rounding) {
+    const double first = report_.steps.front().dx_rms_px, last = wanted(rounding);
+    share_ += kLeastShare * (1.0 - share_);
+    if (last > 0.0 && last < first && report_.error_rms < first)
+      share_ = std::max(share_, std::min(kMostShare, std::log(first / report_.error_rms) /
+                                                         std::log(first / last)));
   }
   bool end(Status status) {
     report_.status = status;
@@ -113,7 +132,7 @@ class Judge {
   const NewtonOptions& options_;
   NewtonReport& report_;
   int creeping_ = 0, settled_ = 0, unsolved_ = 0, calm_ = kCalm;
-  double seen_before_ = 0.0;
+  double seen_before_ = 0.0, share_ = 0.0;
   bool only_areas_lack_ = false;
 };
 

@@ -180,11 +180,9 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
                              : kShare * before.discretisation_rms_px / cell_px;
   ClampSchedule clamp;
   const kernels::Law<T> law = level.solid.law;
-  auto progress = [&](int step) {
-    if (options.progress) options.progress({level.nx, level.ny, step, std::min(1.0, 0.25 * step)});
-  };
+  const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, 0, 0);
   NewtonReport done = Newton<T>(hierarchy, 0, meter).run(newton, clamp, progress);
-  if (done.status != Status::converged) {
+  if (done.status != Status::converged && done.status != Status::cancelled) {
     clear_state(level);
     level.solid.law = law;
     for (auto& shift : level.solid.shift) shift.clear();
@@ -198,6 +196,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   report.discretisation_rms_px = before.discretisation_rms_px;
   report.discretisation_max_px = before.discretisation_max_px;
   report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
+  if (report.status == Status::cancelled) forget_errors(report);
   return true;
 }
 

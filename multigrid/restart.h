@@ -18,8 +18,8 @@ template <class T>
 std::vector<CurveForce> curve_forces(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts);
 
 /// Newton on the finest level from `start`, whose forces are taken over where the same cell is cut.
-/// True if it converged: to options.tolerance_cells or, if that is 0, to a tenth of the start's
-/// discretisation error. Otherwise the state is zero again and nothing is reported.
+/// True if it was cancelled, or converged: to options.tolerance_cells or, if that is 0, to a tenth
+/// of the start's discretisation error. Otherwise the state is zero again and nothing is reported.
 template <class T>
 bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, const Solution& start,
                         const NestedOptions& options, grid::MemoryMeter& meter,

@@ -19,6 +19,7 @@
 #include "curve_method.h"
 #include "load_path.h"
 #include "nested.h"
+#include "progress_line.h"
 #include "restart.h"
 #include "scene.h"
 #include "solve_notes.h"
@@ -122,6 +123,8 @@ EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts)
 template <class T>
 double time_work_unit(Hierarchy<T>& hierarchy) {
   Level<T>& level = hierarchy[0];
+  // A solve that ended on a coarser lattice left these rows without a state.
+  if (level.conforming) level.conforming->rows.linearise(level.membrane());
   std::array<double, 5> seconds{};
   for (double& s : seconds) {
     const Clock::time_point start = Clock::now();
@@ -245,19 +248,22 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   check(problem, options);
   SolverOptions chosen = options;
   chosen.curve_method = chosen_method(problem, options);
+  ProgressLine line(options.progress);
+  if (options.progress) chosen.progress = std::ref(line);
   const kernels::ThreadLimit threads(options.threads);
   Solution solution = solve_by(problem, chosen);
   if (options.curve_method == CurveMethod::automatic &&
-      chosen.curve_method == CurveMethod::conforming && solution.report.status != Status::converged)
+      chosen.curve_method == CurveMethod::conforming &&
+      solution.report.status != Status::converged && solution.report.status != Status::cancelled)
     solution = solve_averaged_instead(problem, chosen, std::move(solution));
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);
   note_folds(problem.material, solution.report);
   const kernels::Model model = problem.material.model;
-  solution.report.model = kernels::isotropic(model)   ? std::string(kernels::name(model))
-                          : solution.pressure.empty() ? "harmonic"
-                                                      : "crpm";
+  solution.report.model = kernels::isotropic(model)   ? model
+                          : solution.pressure.empty() ? kernels::Model::harmonic
+                                                      : kernels::Model::crpm;
   return solution;
 }
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 
 #include "driver_scratch.h"
 #include "image.h"
+#include "interrupt.h"
 #include "progress.h"
 
 namespace drumhead::driver {
@@ -182,6 +184,26 @@ TEST_F(DriverCommand, SaysItsVersion) {
   const RunResult result = run_drumhead(scratch, {"--version"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.out.starts_with("drumhead 0.")) << result.out;
+}
+
+volatile std::sig_atomic_t ends = 0;
+extern "C" void count_end(int) { ends = ends + 1; }
+
+TEST(SolveInterrupt, NotesTheFirstSignalAndLeavesOthersAsTheyWere) {
+  const auto before = std::signal(SIGINT, count_end);
+  {
+    const SolveInterrupt interrupt;
+    EXPECT_FALSE(interrupt.asked());
+    std::raise(SIGINT);
+    EXPECT_TRUE(interrupt.asked());
+    EXPECT_EQ(ends, 0);
+    std::raise(SIGINT);
+    EXPECT_EQ(ends, 1);
+  }
+  std::raise(SIGINT);
+  EXPECT_EQ(ends, 2);
+  EXPECT_FALSE(SolveInterrupt().asked());
+  std::signal(SIGINT, before);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The façade: what solve() refuses, and with which words.
+// The façade: what solve() refuses, and with which words; how far it says it is, and how it stops.
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include <drumhead/multigrid/warp.h>
 #include <gtest/gtest.h>
@@ -73,6 +75,124 @@ TEST_P(StartRefusal, NamesWhatIsMissingOrNotFinite) {
 }
 INSTANTIATE_TEST_SUITE_P(Methods, StartRefusal,
                          testing::Values(CurveMethod::averaged, CurveMethod::conforming));
+
+/// Every fraction that a solve tells.
+std::vector<double> fractions(const WarpProblem& problem, SolverOptions options, Solution& result) {
+  std::vector<double> told;
+  options.progress = [&](const Progress& at) {
+    told.push_back(at.fraction);
+    return true;
+  };
+  result = solve(problem, options);
+  return told;
+}
+
+void expect_rising(const std::vector<double>& told) {
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.front(), 0.0);
+  for (std::size_t n = 1; n < told.size(); ++n) EXPECT_GE(told[n], told[n - 1]) << n;
+  EXPECT_LT(told.back(), 1.0);
+}
+
+struct ProgressCase {
+  const char* name;
+  WarpProblem problem;
+  SolverOptions options;
+};
+
+WarpProblem turned_ring(double degrees, int cells, double kappa, kernels::Model model) {
+  WarpProblem problem =
+      scenes::problem(scenes::roundabout(degrees, scenes::kStudyOffset), cells, kappa);
+  problem.material.model = model;
+  return problem;
+}
+
+// Many steps on a level, a load path with exact rows, and the two ways to meet curves.
+TEST(Progress, RisesAndStaysBelowOneUntilTheSolveEnds) {
+  using kernels::Model;
+  const ProgressCase cases[] = {
+      {"averaged",
+       turned_ring(90.0, 128, 10.0, Model::crpm),
+       {.curve_method = CurveMethod::averaged}},
+      {"conforming", turned_ring(90.0, 128, 10.0, Model::crpm), {.tolerance_px = 1e-6}},
+      {"path", turned_ring(135.0, 64, 1.0, Model::crpm), {.exact = true}},
+      {"arap", turned_ring(60.0, 64, 1e3, Model::arap), {}},
+  };
+  for (const ProgressCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    Solution solution;
+    const std::vector<double> told = fractions(c.problem, c.options, solution);
+    expect_rising(told);
+    std::size_t steps = 0;
+    for (const LevelReport& level : solution.report.levels) steps += level.newton.size();
+    EXPECT_GE(told.size(), steps);
+    // Where the finest lattice takes several steps, none but the last ones are told as nearly done.
+    const std::size_t last = solution.report.levels.back().newton.size();
+    if (last >= 4) {
+      EXPECT_LT(told[told.size() - last], 0.5);
+    }
+  }
+}
+
+// A start of no use, and then the whole nested iteration.
+TEST(Progress, GoesOnWhereASolveBeginsAnew) {
+  const WarpProblem problem = shifted_disc(64);
+  Solution far = solve(problem), again;
+  for (double& u : far.u_px) u *= -1.0;
+  far.report.discretisation_rms_px = 1e-9;
+  const std::vector<double> told = fractions(problem, {.start = &far}, again);
+  EXPECT_GT(again.report.levels.size(), 1u);
+  expect_rising(told);
+}
+
+class Cancelled : public testing::TestWithParam<CurveMethod> {};
+
+TEST_P(Cancelled, KeepsTheIterateThatItCameTo) {
+  const WarpProblem problem = shifted_disc(128);
+  for (const int nx : {32, 64, 128}) {
+    int calls = 0;
+    SolverOptions options{.curve_method = GetParam()};
+    options.progress = [&](const Progress& at) {
+      ++calls;
+      EXPECT_LE(at.nx, nx);
+      return at.nx < nx;
+    };
+    const Solution solution = solve(problem, options);
+    EXPECT_EQ(solution.report.status, Status::cancelled) << nx;
+    EXPECT_GT(calls, 0);
+    ASSERT_EQ(solution.u_px.size(), problem.lattice.nodes());
+    // What came from the coarser lattice carries the curve already, to a cell or two of that.
+    ASSERT_EQ(solution.report.curves.size(), 1u);
+    EXPECT_LT(solution.report.curves[0].gap_max_px, 2.0 / 32);
+    EXPECT_TRUE(std::isnan(solution.report.algebraic_rms_px));
+    EXPECT_TRUE(std::isnan(solution.report.discretisation_rms_px));
+    EXPECT_STREQ(name(solution.report.status), "cancelled");
+  }
+}
+
+TEST_P(Cancelled, IsNotAskedAgainAndDoesNotBeginAnew) {
+  const WarpProblem problem = shifted_disc(64);
+  const Solution start = solve(problem, {.curve_method = GetParam()});
+  for (const Solution* from : {static_cast<const Solution*>(nullptr), &start}) {
+    int calls = 0;
+    SolverOptions options{.curve_method = GetParam(), .start = from};
+    options.progress = [&](const Progress&) { return ++calls < 1; };
+    EXPECT_EQ(solve(problem, options).report.status, Status::cancelled);
+    EXPECT_EQ(calls, 1);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, Cancelled,
+                         testing::Values(CurveMethod::averaged, CurveMethod::conforming,
+                                         CurveMethod::automatic));
+
+TEST(CancelledPath, EndsAtOnceWithExactRows) {
+  WarpProblem problem = turned_ring(135.0, 64, 1.0, kernels::Model::crpm);
+  int calls = 0;
+  SolverOptions options{.exact = true};
+  options.progress = [&](const Progress&) { return ++calls < 3; };
+  EXPECT_EQ(solve(problem, options).report.status, Status::cancelled);
+  EXPECT_EQ(calls, 3);
+}
 
 }  // namespace
 }  // namespace drumhead::multigrid

@@ -69,7 +69,7 @@ TEST(Memory, AMaskOfOneValueIsTheConstant) {
 TEST(Memory, AKappaMaskOfZerosIsHarmonic) {
   multigrid::Solution zeros = solve(0.0, false, true);
   EXPECT_TRUE(zeros.pressure.empty());
-  EXPECT_EQ(zeros.report.model, "harmonic");
+  EXPECT_EQ(zeros.report.model, kernels::Model::harmonic);
   EXPECT_EQ(bytes_per_node(zeros), bytes_per_node(solve(0.0, false, false)));
 }
 

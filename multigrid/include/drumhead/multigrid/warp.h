@@ -23,12 +23,12 @@ struct WarpProblem {
   std::vector<grid::CurvePair> curves;
 };
 
-/// What the solver is doing, for a progress line. Called from the calling thread, a few times per
-/// second at most per lattice level and Newton step.
+/// What the solver is about to do, for a progress line.
 struct Progress {
-  int nx = 0, ny = 0;     ///< the level
-  int newton_step = 0;    ///< on that level, from 1
-  double fraction = 0.0;  ///< rough share of the whole solve that is done, 0…1
+  int nx = 0, ny = 0;   ///< the level
+  int newton_step = 0;  ///< on that level, from 1
+  /// Rough share of the whole solve that is done: 0 at first, never less than before, below 1.
+  double fraction = 0.0;
 };
 
 /// How the linear system of a Newton step is solved.
@@ -76,8 +76,10 @@ struct SolverOptions {
   /// that does not converge, with exact rows, and where the curves were met in another way, the
   /// scene is solved from the beginning. Automatic goes on as the start did.
   const Solution* start = nullptr;
-  int threads = 0;                                ///< OpenMP threads; 0: as OpenMP decides
-  std::function<void(const Progress&)> progress;  ///< optional
+  int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides
+  /// Optional. Called by the calling thread before each Newton step; false: stop
+  /// (Status::cancelled; it is not called again).
+  std::function<bool(const Progress&)> progress;
 };
 
 enum class Status {
@@ -85,6 +87,9 @@ enum class Status {
   stalled,     ///< no further decrease was possible before it was reached
   infeasible,  ///< the hard curve rows contradict one another
   limit,       ///< the step limit came first
+  /// Progress was answered with false; the last iterate is returned, of a coarser lattice if it
+  /// came to no finer one. Its errors and volume_gap are not numbers.
+  cancelled,
   not_finite,  ///< a number that is not finite appeared; the last finite iterate is returned
 };
 const char* name(Status status);
@@ -126,7 +131,7 @@ inline constexpr double kMostVolumeGap = 0.02;
 
 struct SolveReport {
   Status status = Status::converged;
-  std::string model = "crpm";
+  kernels::Model model = kernels::Model::crpm;  ///< crpm without any kappa is harmonic
   Solver solver = Solver::gcr;
   CurveMethod curve_method = CurveMethod::averaged;  ///< the way that was taken: not automatic
   bool exact = false;
