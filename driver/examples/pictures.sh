@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws driver/examples/pictures again, which the READMEs show: 640 pixels wide.
+# Draws driver/examples/pictures again, which the READMEs show: 600 pixels wide.
 #     sh driver/examples/pictures.sh                 all scenes
 #     sh driver/examples/pictures.sh face sponge     only these
 # Wants the Debian package optipng beside those of driver/demo.sh, which it runs first.
@@ -16,7 +16,7 @@ mkdir -p "$examples/pictures"
 [ $# -gt 0 ] || set -- $(cd "$examples" && ls -- *.toml | sed 's/\.toml$//' | sort)
 # small FROM TO
 small() {
-  oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 640x0 -d uint8 -o "$2"
+  oiiotool "$1" --ch R,G,B --resize:filter=lanczos3 600x0 -d uint8 -o "$2"
   optipng -quiet -o3 -strip all "$2"
 }
 for scene in "$@"; do
