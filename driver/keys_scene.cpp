@@ -155,7 +155,7 @@ const std::array kKeys = {
         .help =
             "averaged: curves are met on average in each cell, an error of first order in the "
             "cell size; conforming: cells are divided along them, second order, weight inf only; "
-            "automatic: conforming for weight inf and kappa/mu up to 300, crpm or harmonic",
+            "automatic: conforming for weight inf, crpm or harmonic",
         .fallback = "automatic",
         .set = set_curve_method},
     Key{.name = "exact",

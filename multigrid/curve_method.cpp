@@ -13,10 +13,6 @@ constexpr std::array kNames{std::pair{CurveMethod::automatic, "automatic"},
                             std::pair{CurveMethod::averaged, "averaged"},
                             std::pair{CurveMethod::conforming, "conforming"}};
 
-// Beyond it, conforming cells converge, but nothing bounds the error of their areas: S2 turned by
-// 135 degrees at kappa 1000, 128²: a tenth of the energy, at 1e4 nearly half of it.
-constexpr double kMostStiffness = 300.0;
-
 }  // namespace
 
 const char* name(CurveMethod method) {
@@ -52,8 +48,7 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;
   }
-  if (!why_not.empty() || grid::largest_stiffness(problem.material) > kMostStiffness)
-    return CurveMethod::averaged;
+  if (!why_not.empty()) return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

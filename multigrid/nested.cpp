@@ -211,7 +211,7 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.share_of_change = start ? 0.0 : share * options.discretisation_share;
   newton.tolerance_rms = start ? (easy ? kGentleStart : kStartError) * double(level.spacing) : 0.0;
   newton.tolerance_max = 0.0;
-  newton.most_volume_gap = finest && !level.conforming ? kMostVolumeGap : 0.0;
+  newton.most_volume_gap = finest ? kMostVolumeGap : 0.0;
 }
 
 /// What the run itself is asked for besides, once it has a state to begin with.
@@ -280,8 +280,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
-    report.volume_gap =
-        level.conforming ? std::numeric_limits<double>::quiet_NaN() : done.volume_gap;
+    report.volume_gap = done.volume_gap;
     LevelChange change{done.change_rms, done.change_max};
     double share =
         l == start ? std::numeric_limits<double>::quiet_NaN() : options.discretisation_share;

@@ -196,7 +196,8 @@ double Newton<T>::drop_momentum() {
   const kernels::Unknowns<T> f = level_.f.view();
   const kernels::Unknowns<T> nodes{f.x, f.y, {}};
   kernels::combine<T>(T(0), nodes, T(0), nodes);
-  double sum = kernels::dot<T>(f.p, f.p) / double(level_.spacing * level_.spacing);
+  double sum = (kernels::dot<T>(f.p, f.p) + kernels::dot_listed<T>(f, f)) /
+               double(level_.spacing * level_.spacing);
   for (const T value : level_.fq) sum += double(value) * double(value);
   return std::sqrt(sum);
 }

@@ -51,7 +51,7 @@ struct NewtonReport {
   double change_rms = 0.0, change_max = 0.0;  ///< all that Newton changed, finest cells
   /// Σ A kappa/2 (J* − 1 − P/kappa)², by how much the energy exceeds Eq. 5 at the same state: as a
   /// share of the energy at rest, Σ A mu, where that is below most_volume_gap or none is asked for,
-  /// else of the energy. Without cells that conform to curves, and where 1/kappa is 0.
+  /// else of the energy. Cells where 1/kappa is 0 do not count.
   double volume_gap = 0.0;
   std::vector<double> rates;  ///< contractions observed, for the next level
 };

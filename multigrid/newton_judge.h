@@ -28,6 +28,7 @@ class Judge {
       // Solved, and no better: curves and areas contradict one another.
       const bool in_vain = step.residual <= kUnsolved && volume_gap > kInVain * gap_before;
       only_areas_lack_ = step.step > 0.0 && !areas_done();
+      areas_fail_ = step.step == 0.0;
       return (areas_done() || in_vain) && end(Status::converged);
     }
     const bool first = report_.steps.empty();
@@ -59,7 +60,8 @@ class Judge {
     const bool settled = enough && settled_ >= (calm_ < kCalm ? 2 : 1);
     if (settled && areas_done()) return end(Status::converged);
     only_areas_lack_ = settled;
-    return full && step.dx_rms_px <= rounding && end(Status::stalled);
+    const bool may_mend = only_areas_lack_ && !areas_fail_;
+    return full && !may_mend && step.dx_rms_px <= rounding && end(Status::stalled);
   }
 
   /// Nodes have moved enough, but volume rows leave too much: the next step is for them (and curve
@@ -134,6 +136,7 @@ class Judge {
   int creeping_ = 0, settled_ = 0, unsolved_ = 0, calm_ = kCalm;
   double seen_before_ = 0.0, share_ = 0.0;
   bool only_areas_lack_ = false;
+  bool areas_fail_ = false;  // the last step for areas alone was not taken
 };
 
 }  // namespace drumhead::multigrid

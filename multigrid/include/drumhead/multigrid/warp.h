@@ -49,8 +49,8 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
-  /// Conforming where that is possible (crpm or harmonic, Solver::gcr, hard curves, not exact) and
-  /// kappa/mu is at most 300, else averaged; averaged, too, where conforming cells do not converge.
+  /// Conforming where that is possible (crpm or harmonic, Solver::gcr, hard curves, not exact), else
+  /// averaged; averaged, too, where conforming cells do not converge.
   automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
   conforming  ///< cells divided along the curves (grid/conforming.h): second order, hard curves
@@ -144,8 +144,7 @@ struct SolveReport {
   double discretisation_rms_px = 0.0, discretisation_max_px = 0.0;
   /// The algebraic error of areas: share of the membrane's energy by which that exceeds Eq. 5 at
   /// the same state, Σ A kappa/2 (J* − 1 − P/kappa)², or an upper bound of the share. At most
-  /// kMostVolumeGap where `converged`, or a note says that curves and areas contradict one another;
-  /// not a number with conforming curves.
+  /// kMostVolumeGap where `converged`, or a note says that curves and areas contradict one another.
   double volume_gap = 0.0;
   std::vector<CurveReport> curves;
   FoldReport folds;
