@@ -43,16 +43,18 @@ double gap(const Solution& s) {
 }
 
 void print(const std::string& name, const Solution& s) {
-  std::printf("| %s | %d² | %s | %s | %zu (%d) | %.4f | %.4f | %d | %.3f |\n", name.c_str(), s.lattice.nx,
-              multigrid::name(s.report.curve_method), multigrid::name(s.report.status), steps(s),
-              cycles(s), s.report.energy.total, s.report.volume_gap, s.report.folds.folded_cells, gap(s));
+  std::printf("| %s | %d² | %s | %s | %zu (%d) | %.4f | %.4f | %d | %.3f |\n", name.c_str(),
+              s.lattice.nx, multigrid::name(s.report.curve_method),
+              multigrid::name(s.report.status), steps(s), cycles(s), s.report.energy.total,
+              s.report.volume_gap, s.report.folds.folded_cells, gap(s));
 }
 
 class ConformingCases : public testing::TestWithParam<int> {};
 
 // Where conforming cells do not converge (S2 180 degrees at kappa 100 on 32²: Newton's method
-// wanders with theta = 1), the automatic choice takes averaged rows. S5, whose curves change places, is stiff at its tips: averaged rows end with `limit` at 32²
-// from kappa 10 on, after 60 steps.
+// wanders with theta = 1), the automatic choice takes averaged rows. S5, whose curves change
+// places, is stiff at its tips: averaged rows end with `limit` at 32² from kappa 10 on, after 60
+// steps.
 TEST_P(ConformingCases, EndAsTrulyAsAveragedRowsInAsManyStepsAndAFew) {
   const int n = GetParam();
   int others = 0;
