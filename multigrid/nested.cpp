@@ -249,6 +249,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
   ClampSchedule clamp;
   NewtonOptions newton_options;
   std::vector<LevelChange> changes;
+  bool rounded = false;
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
     const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, start);
@@ -281,6 +282,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
     report.volume_gap = done.volume_gap;
+    rounded = done.rounded;
     LevelChange change{done.change_rms, done.change_max};
     double share =
         l == start ? std::numeric_limits<double>::quiet_NaN() : options.discretisation_share;
@@ -295,6 +297,11 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     if (ended_early(report.status)) return end_early(hierarchy, l, report);
   }
   note_areas(report);
+  if (rounded)
+    report.notes.push_back("single precision: nodes settle to " +
+                           std::to_string(report.algebraic_rms_px) +
+                           " px RMS, more than a tenth of the discretisation error; a tolerance "
+                           "below that is solved in double precision");
 }
 
 template void nested_iteration(Hierarchy<float>&, const NestedOptions&, double, grid::MemoryMeter&,

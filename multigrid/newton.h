@@ -53,6 +53,8 @@ struct NewtonReport {
   /// share of the energy at rest, Σ A mu, where that is below most_volume_gap or none is asked for,
   /// else of the energy. Cells where 1/kappa is 0 do not count.
   double volume_gap = 0.0;
+  bool rounded =
+      false;  ///< ended where the precision of T lets nodes come no closer, with error_rms
   std::vector<double> rates;  ///< contractions observed, for the next level
 };
 
