@@ -22,6 +22,10 @@ drumhead_test(NAME driver_large_test
   SOURCES driver_scratch.cpp driver_large_test.cpp
   LINK drumhead_driver
   LABEL slow)
+drumhead_test(NAME driver_examples_test
+  SOURCES driver_scratch.cpp driver_examples_test.cpp
+  LINK drumhead_driver
+  LABEL slow)
 drumhead_test(NAME driver_consumers_test
   SOURCES driver_scratch.cpp driver_consumers_test.cpp
   LINK drumhead_driver
@@ -36,7 +40,7 @@ if(OPENCV_INCLUDE_DIR AND OPENCV_IMGPROC AND OPENCV_CORE)
   target_compile_definitions(driver_consumers_test PRIVATE DRUMHEAD_TEST_OPENCV=1)
 endif()
 foreach(test driver_test driver_warp_test driver_start_test driver_page_test driver_large_test
-    driver_consumers_test)
+    driver_examples_test driver_consumers_test)
   target_compile_definitions(${test} PRIVATE
     DRUMHEAD_EXECUTABLE="$<TARGET_FILE:drumhead>"
     DRUMHEAD_TEST_DATA="${CMAKE_CURRENT_LIST_DIR}/data")
