@@ -196,7 +196,7 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool v
     if (cuts) add(Sweep::cuts);
     if (volume && reverse) add(Sweep::volume);
   }
-  if (near && volume) {
+  if (near && volume && stages.curves_again) {
     // Once more along the curves: V-cycles that take a residual down by 1000 at 128², kappa 1e4: S1
     // 16 (20 without), S2 25 (29), S4 16 (21); more sweeps gain nothing more.
     for (int parity : {0, 1}) list.add({Sweep::near, parity});

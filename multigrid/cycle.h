@@ -59,7 +59,7 @@ class Cycle {
   std::optional<KaczmarzSmoother<T>> smoother_;
   std::vector<CurvePatch<T>> patches_;  ///< of all levels but the bottom, from the top
   std::vector<T> residual_;
-  bool relaxes_band_ = false;
+  bool relaxes_band_ = false, curves_again_ = true;
 };
 
 }  // namespace drumhead::multigrid

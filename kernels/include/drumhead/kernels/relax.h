@@ -76,6 +76,8 @@ enum class Sweeps {
 struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
   Sweeps sweeps = Sweeps::all;
+  /// With Sweeps::all, near nodes and parts of special cells are relaxed once more at the end.
+  bool curves_again = true;
 };
 
 /// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p)

@@ -49,7 +49,8 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
-  /// Conforming where that is possible (crpm or harmonic, Solver::gcr, hard curves, not exact), else
+  /// Conforming where that is possible (crpm or harmonic, Solver::gcr, hard curves, not exact),
+  /// else
   /// averaged; averaged, too, where conforming cells do not converge.
   automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
