@@ -2,6 +2,7 @@
 #include "float_exr.h"
 
 #include <OpenImageIO/imageio.h>
+#include <drumhead/kernels/version.h>
 #include <algorithm>
 #include <stdexcept>
 

@@ -29,6 +29,16 @@ bool set_whole(const Value& value, int most, int& field);
 
 bool set_switch(const Value& value, bool& field);
 
+template <auto Field>
+bool set_positive(const Value& value, Options& options) {
+  return set_positive(value, options.*Field);
+}
+
+template <auto Field>
+bool set_switch(const Value& value, Options& options) {
+  return set_switch(value, options.*Field);
+}
+
 /// A path that is not empty and ends in `extension`, if that is not empty.
 bool set_path(const Value& value, std::string_view extension, std::filesystem::path& field);
 

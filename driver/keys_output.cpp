@@ -49,13 +49,13 @@ const std::array kKeys = {
         .help =
             "pictures and maps cover the whole padded domain; in EXR it is the data window, and "
             "the picture stays the display window",
-        .set = [](const Value& v, Options& o) { return set_switch(v, o.expand); }},
+        .set = set_switch<&Options::expand>},
     Key{.name = "linear_light",
         .value = "",
         .bound = "true or false",
         .help = "colours of 8 and 16 bits are decoded from sRGB before they are filtered, and "
                 "coded again; those of float pictures are light already and stay as they are",
-        .set = [](const Value& v, Options& o) { return set_switch(v, o.linear_light); }},
+        .set = set_switch<&Options::linear_light>},
     Key{.name = "overlay",
         .value = "PNG",
         .bound = kPng,
@@ -92,7 +92,7 @@ const std::array kKeys = {
         .value = "",
         .bound = "true or false",
         .help = "nothing on the terminal but warnings and errors",
-        .set = [](const Value& v, Options& o) { return set_switch(v, o.quiet); }},
+        .set = set_switch<&Options::quiet>},
 };
 
 }  // namespace

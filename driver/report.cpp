@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include <drumhead/kernels/model.h>
+#include <drumhead/kernels/version.h>
 #include <sys/resource.h>
 #include <cmath>
 #include <fstream>

@@ -3,6 +3,7 @@
 // An array of VTK's XML files in their "binary" format: base64 of the number of bytes and the
 // values.
 #include <OpenImageIO/strutil.h>
+#include <drumhead/kernels/version.h>
 #include <bit>
 #include <cstdint>
 #include <ostream>

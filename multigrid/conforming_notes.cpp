@@ -2,21 +2,16 @@
 #include "conforming_notes.h"
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <tuple>
+
+#include "words.h"
 
 namespace drumhead::multigrid {
 namespace {
 
 // Smaller contradictions are not seen.
 constexpr double kNotable = 0.05;  // cells
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
-}
 
 std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -44,8 +39,7 @@ class Notes {
 
  private:
   std::string place(grid::Point cells) const {
-    const grid::Point px = problem_.lattice.origin_px + problem_.lattice.cell_px * cells;
-    return "(" + number(px.x) + ", " + number(px.y) + ") px";
+    return in_words(problem_.lattice.origin_px + problem_.lattice.cell_px * cells);
   }
   std::string curve(int n) const { return "'" + problem_.curves[std::size_t(n)].name + "'"; }
   bool on_edge(grid::Point cells) const {
@@ -70,8 +64,7 @@ class Notes {
     }
     for (const auto& [pair, worst] : pairs) {
       const auto& [a, b, edge] = pair;
-      const std::string distance =
-                            number(worst.conflict->distance * problem_.lattice.cell_px) + " px",
+      const std::string distance = in_words(worst.conflict->distance * problem_.lattice.cell_px),
                         at = place(worst.conflict->rest);
       if (edge)
         notes_.push_back("curve " + curve(a) +

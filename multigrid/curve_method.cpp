@@ -9,7 +9,7 @@
 namespace drumhead::multigrid {
 namespace {
 
-constexpr std::array kNames{std::pair{CurveMethod::automatic, "automatic"},
+constexpr std::array kNames{std::pair{CurveMethod::automatic, "auto"},
                             std::pair{CurveMethod::averaged, "averaged"},
                             std::pair{CurveMethod::conforming, "conforming"}};
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "corners.h"
+#include "words.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -23,9 +24,7 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
     if (!std::isinf(problem.curves[n].weight)) continue;
     if (curve.gap_max_px > notable_px)
       report.notes.push_back("curve '" + curve.name + "' misses its target by up to " +
-                             std::to_string(curve.gap_max_px) + " px at (" +
-                             std::to_string(curve.worst_px.x) + ", " +
-                             std::to_string(curve.worst_px.y) + ") px");
+                             in_words(curve.gap_max_px) + " at " + in_words(curve.worst_px));
   }
 }
 
@@ -34,12 +33,11 @@ void note_folds(const grid::Material& material, SolveReport& report) {
   const bool free = material.model == kernels::Model::arap && material.kappa >= kAsInequality;
   const bool collapses = material.model == kernels::Model::stvk;
   if (folds.folded_cells == 0 || (!free && !collapses)) return;
-  const grid::Point place = folds.places_px.front();
   report.notes.push_back(
       std::string(free ? "no state without folds was found: "
                        : "stvk yields where it is pressed below 1/√3 of its length: ") +
-      std::to_string(folds.folded_cells) + " cells are folded, one at (" + std::to_string(place.x) +
-      ", " + std::to_string(place.y) + ") px");
+      std::to_string(folds.folded_cells) + " cells are folded, one at " +
+      in_words(folds.places_px.front()));
 }
 
 }  // namespace drumhead::multigrid

@@ -126,7 +126,7 @@ TEST(DriverScene, ErrorsNameFileLineAndBound) {
            {"exact = 1", "exact = 1: must be true or false"},
            {"solver = \"cg\"", "solver = 'cg': must be one of: gcr, kaczmarz, coloured-kaczmarz"},
            {"curve_method = \"cut\"",
-            "curve_method = 'cut': must be one of: automatic, averaged, conforming"},
+            "curve_method = 'cut': must be one of: auto, averaged, conforming"},
            {"overlay = \"a.jpg\"", "overlay = 'a.jpg': must be the path of a .png file"},
            {"output = \"\"", "output = '': must be the path of a file"},
            {"kapa = 1",

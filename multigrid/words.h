@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Lengths and places as notes name them.
+#include <cstdio>
+#include <string>
+
+#include <drumhead/grid/curve.h>
+
+namespace drumhead::multigrid {
+
+/// "12.35 px"
+inline std::string in_words(double px) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f px", px);
+  return text;
+}
+
+/// "(12.35, 6.70) px"
+inline std::string in_words(grid::Point px) {
+  char text[128];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f) px", px.x, px.y);
+  return text;
+}
+
+}  // namespace drumhead::multigrid
