@@ -152,14 +152,11 @@ double weight_of(const Json& row) {
 }
 bool hard(const Json& row) { return std::isinf(weight_of(row)); }
 
-void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
-  const Rows every =
-      where(measured.table("rates"), [](const Json& row) { return row.value("converged", true); });
-  const Rows gcr = where(every, [](const Json& row) { return text(row, "solver") == "gcr"; });
-  const Number rate = number_of("work_units_per_digit");
-  const auto scene_and_kappa = [](const Json& row) {
-    return text(row, "scene") + ", kappa " + figure(value(row, "kappa"));
-  };
+std::string scene_and_kappa(const Json& row) {
+  return text(row, "scene") + ", kappa " + figure(value(row, "kappa"));
+}
+
+void add_rates_over_lattices(const Rows& gcr, const Number& rate, std::vector<ReportPlot>& all) {
   ReportPlot sizes{"rates_n",
                    "scaling",
                    "One Newton system, hard curves.",
@@ -171,7 +168,9 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
   std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 3; });
   for (std::size_t k = 0; k < sizes.plot.series.size(); ++k) sizes.plot.series[k].look = int(k) % 8;
   all.push_back(std::move(sizes));
+}
 
+void add_rates_over_kappa(const Rows& every, const Number& rate, std::vector<ReportPlot>& all) {
   const Rows roundabout = where(every, [](const Json& row) {
     return hard(row) && text(row, "scene") == "S2" && value(row, "n") == 128;
   });
@@ -191,7 +190,9 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
   kappas.plot.series = lines_of(
       roundabout, [](const Json& row) { return text(row, "solver"); }, place, rate);
   all.push_back(std::move(kappas));
+}
 
+void add_rates_over_weights(const Rows& gcr, const Number& rate, std::vector<ReportPlot>& all) {
   // Only scenes that were tried with soft curves.
   const auto like = [](const Json& a) {
     return [&a](const Json& b) {
@@ -216,11 +217,21 @@ void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
   };
   weights.plot.series = lines_of(
       ascending,
-      [&](const Json& row) { return scene_and_kappa(row) + ", " + figure(value(row, "n")) + "²"; },
+      [](const Json& row) { return scene_and_kappa(row) + ", " + figure(value(row, "n")) + "²"; },
       stiffness, rate);
   for (std::size_t k = 0; k < weights.plot.series.size(); ++k)
     weights.plot.series[k].look = int(k) % 8;
   all.push_back(std::move(weights));
+}
+
+void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
+  const Rows every =
+      where(measured.table("rates"), [](const Json& row) { return row.value("converged", true); });
+  const Rows gcr = where(every, [](const Json& row) { return text(row, "solver") == "gcr"; });
+  const Number rate = number_of("work_units_per_digit");
+  add_rates_over_lattices(gcr, rate, all);
+  add_rates_over_kappa(every, rate, all);
+  add_rates_over_weights(gcr, rate, all);
 }
 
 void add_warps(const Measurements& measured, std::vector<ReportPlot>& all) {

@@ -234,6 +234,21 @@ CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, doubl
   return cutter.finish();
 }
 
+namespace {
+
+/// Coarse cuts that follow one another because children of theirs do.
+std::vector<std::array<int, 2>> coarse_pairs(const CutCells& fine, const std::vector<int>& parent) {
+  std::vector<std::array<int, 2>> pairs;
+  for (std::size_t k = 0; k < std::size_t(fine.size()); ++k)
+    for (int l = fine.link_begin[k]; l < fine.link_begin[k + 1]; ++l) {
+      const int p = parent[k], q = parent[std::size_t(fine.link[std::size_t(l)])];
+      if (p >= 0 && q >= 0 && p < q) pairs.push_back({p, q});
+    }
+  return pairs;
+}
+
+}  // namespace
+
 CoarseCuts coarsen(const CutCells& fine, int nx, int ny) {
   const int coarse_nx = coarse_cells(nx), coarse_ny = coarse_cells(ny);
   CoarseCuts out;
@@ -287,12 +302,7 @@ CoarseCuts coarsen(const CutCells& fine, int nx, int ny) {
   }
   for (std::size_t j = 0; j < std::size_t(coarse_ny); ++j)
     cuts.row_begin[j + 1] += cuts.row_begin[j];
-  std::vector<std::array<int, 2>> pairs;
-  for (std::size_t k = 0; k < std::size_t(fine.size()); ++k)
-    for (int l = fine.link_begin[k]; l < fine.link_begin[k + 1]; ++l) {
-      const int p = out.parent[k], q = out.parent[std::size_t(fine.link[std::size_t(l)])];
-      if (p >= 0 && q >= 0 && p < q) pairs.push_back({p, q});
-    }
+  std::vector<std::array<int, 2>> pairs = coarse_pairs(fine, out.parent);
   set_links(cuts, pairs);
   return out;
 }

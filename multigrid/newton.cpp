@@ -40,8 +40,6 @@ constexpr double kModelError = 2.0, kSlow = 0.5;
 // theta was too large.
 constexpr double kUnsolved = 0.3;
 constexpr int kMostPatience = 32;
-// A full step this large beside the one before may well undo it; two in a row do.
-constexpr double kBackAndForth = 0.9;
 // After a shortened step linear systems are solved to this residual at least, by cycles or by GCR.
 // (Also where the norm of all equations did not show a step to be good: S1 kappa 10, 400², 912 work
 // units, 379 without.)
@@ -317,17 +315,17 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
   LinearAccuracy accuracy(options);
-  double rms_before = 0.0, longest = 1.0;
-  int in_circles = 0;
+  Overshoot overshoot;
   Corners<T> corners(level_, options.onset);
   bool followed = false;
+  const auto ended = [&](Status status) {
+    report.status = status;
+    return report;
+  };
   norm_ = force_norm(level_.nonlinear());
   corners.moved_to(norm_);
   for (int n = 0; n < options.most_steps; ++n) {
-    if (progress && !progress(n + 1, judge.share_done())) {
-      report.status = Status::cancelled;
-      return report;
-    }
+    if (progress && !progress(n + 1, judge.share_done())) return ended(Status::cancelled);
     clamp.theta = std::min(clamp.theta, clamp.most);
     set_clamp(clamp.theta);
     const bool areas = judge.only_areas_lack();
@@ -338,14 +336,12 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
     const double rms = std::sqrt(squares / double(level_.nodes()));
     if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p) +
-                       kernels::dot_listed<T>(d, d))) {
-      report.status = Status::not_finite;
-      return report;
-    }
+                       kernels::dot_listed<T>(d, d)))
+      return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)
-                      : take_step(norm, longest);
-    const bool shortened = step.step < longest;
+                      : take_step(norm, overshoot.longest());
+    const bool shortened = step.step < overshoot.longest();
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
@@ -353,17 +349,9 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const bool ends =
         judge.ends_with(step, precision(), volume_gap(level_, options.most_volume_gap));
     const bool there = !corners.act() || (followed && corners.last());
-    if (ends && there && !lower_floor()) {
-      if (corners.act() && !corners.unfolded()) report.status = Status::stalled;
-      return report;
-    }
-    // A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
-    // ends in the middle.
-    const bool accurate = linear.residual <= kCareful;
-    const bool undone = !accurate && !shortened && n > 0 && rms > kBackAndForth * rms_before;
-    in_circles = undone && longest == 1.0 ? in_circles + 1 : 0;
-    longest = in_circles >= 2 ? 0.5 : 1.0;
-    rms_before = rms;
+    if (ends && there && !lower_floor())
+      return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
+    overshoot.note(rms, n > 0 && !shortened && !(linear.residual <= kCareful));
     if (shortened) {
       linear_options.content = std::min(linear_options.content, kCareful);
       linear_options.reduction = std::min(linear_options.reduction, kCareful);
@@ -376,8 +364,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     }
     adapt(clamp, step, shortened, corners.act(), norm);
   }
-  report.status = Status::limit;
-  return report;
+  return ended(Status::limit);
 }
 
 template class Newton<float>;

@@ -151,4 +151,26 @@ class Judge {
   bool areas_fail_ = false;  // the last step for areas alone was not taken
 };
 
+/// A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
+/// ends in the middle.
+class Overshoot {
+ public:
+  /// The step length that is tried next.
+  double longest() const { return longest_; }
+
+  /// Notes a step by its full move; `counts`: it can have undone the one before.
+  void note(double rms, bool counts) {
+    const bool undone = counts && rms > kBackAndForth * rms_before_;
+    in_circles_ = undone && longest_ == 1.0 ? in_circles_ + 1 : 0;
+    longest_ = in_circles_ >= 2 ? 0.5 : 1.0;
+    rms_before_ = rms;
+  }
+
+ private:
+  // A full step this large beside the one before may well undo it; two in a row do.
+  static constexpr double kBackAndForth = 0.9;
+  double longest_ = 1.0, rms_before_ = 0.0;
+  int in_circles_ = 0;
+};
+
 }  // namespace drumhead::multigrid

@@ -135,6 +135,25 @@ double time_work_unit(Hierarchy<T>& hierarchy) {
   return seconds[seconds.size() / 2];
 }
 
+/// What the nested iteration is asked for, but for the ways to large turns and large kappa.
+NestedOptions nested_options(const WarpProblem& problem, const SolverOptions& options,
+                             const grid::Material& material) {
+  const bool conforming = options.curve_method == CurveMethod::conforming;
+  const bool tips = conforming && has_tips(problem);
+  return {.solver = options.solver,
+          .exact = options.exact,
+          .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
+          .smallest_feature = smallest_feature(problem),
+          .discretisation_share = tips         ? kErrorWithTips
+                                  : conforming ? kErrorOfSecondOrder
+                                               : kErrorOfChange,
+          .tips = tips,
+          .set_targets = {},
+          .limit_kappa = {},
+          .largest_kappa = largest_kappa(material),
+          .progress = options.progress};
+}
+
 template <class T>
 void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution& solution) {
   SolveReport& report = solution.report;
@@ -159,20 +178,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   report.cut_seconds = seconds_since(start);
 
   const Clock::time_point solving = Clock::now();
-  NestedOptions nested{.solver = options.solver,
-                       .exact = options.exact,
-                       .tolerance_cells = options.tolerance_px / problem.lattice.cell_px,
-                       .smallest_feature = smallest_feature(problem),
-                       .discretisation_share = kErrorOfChange,
-                       .tips = false,
-                       .set_targets = {},
-                       .limit_kappa = {},
-                       .largest_kappa = largest_kappa(material),
-                       .progress = options.progress};
-  if (conforming) {
-    nested.tips = has_tips(problem);
-    nested.discretisation_share = nested.tips ? kErrorWithTips : kErrorOfSecondOrder;
-  }
+  NestedOptions nested = nested_options(problem, options, material);
   if (options.exact && traits.pressure)
     nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
   if (largest_turn(problem.curves) > kLoadPathTurn)

@@ -7,6 +7,7 @@ endfunction()
 
 set(house sh ${CMAKE_CURRENT_SOURCE_DIR}/house.sh)
 house_test(house.files_are_short_and_licensed unit ${house} files)
+house_test(house.functions_are_short unit ${house} functions)
 house_test(house.no_arrow_points_backwards unit ${house} arrows)
 house_test(house.readme_names_what_exists unit ${house} readme)
 house_test(house.no_library_holds_a_sparse_matrix unit ${house} sparse

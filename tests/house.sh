@@ -1,6 +1,6 @@
 #!/bin/sh
 # Checks of the source tree and of the built libraries that no compiler makes:
-#   sh tests/house.sh files | arrows | readme
+#   sh tests/house.sh files | functions | arrows | readme
 #   sh tests/house.sh sparse LIBRARY.a…   |   sh tests/house.sh instruction_sets KERNELS.a
 # Prints every offending line; exit code 1 if there is one.
 set -eu
@@ -36,6 +36,24 @@ check_files() {
   sources kernels grid multigrid driver tests bench | while read -r file; do
     head -n 1 "$file" | grep -qF '// SPDX-License-Identifier: MIT' || echo "$file"
   done | offend "no SPDX line"
+}
+
+# In text as clang-format leaves it, a function begins at its scope's indent and ends with a brace at
+# the same. Tables (return {…) and the one formula of a flattened row kernel may be longer.
+check_functions() {
+  sources kernels grid multigrid driver bench | xargs awk '
+    FNR == 1 { begin[0] = begin[2] = 0 }
+    /^(  )?[^ }#\/]/ {
+      indent = match($0, /[^ ]/) - 1
+      begin[indent] = FNR
+      free[indent] = /gnu::flatten/
+    }
+    /^  return \{$/ && begin[0] == FNR - 1 { free[0] = 1 }
+    /^(  )?\}$/ {
+      indent = match($0, /[^ ]/) - 1
+      count = FNR - begin[indent] + 1
+      if (count > 60 && !free[indent]) print FILENAME ":" begin[indent] " (" count ")"
+    }' | offend "more than 60 lines"
 }
 
 # driver → multigrid → grid → kernels, and where other libraries may be seen.
