@@ -119,13 +119,15 @@ void check_chain(const std::string& name, const char* side, const std::vector<Cu
       if (!std::isfinite(p.x) || !std::isfinite(p.y))
         throw std::invalid_argument("curve '" + name + "': the " + side +
                                     " has a point that is not finite");
-  if (!(arc_length(chain) > 0.0))
+  const bool has_length = std::ranges::any_of(chain, [](const CubicBezier& segment) {
+    return std::ranges::any_of(segment.control,
+                               [&](const Point& p) { return !(p == segment.control[0]); });
+  });
+  if (!has_length)
     throw std::invalid_argument("curve '" + name + "': the " + side + " has no length");
 }
 
 }  // namespace
-
-double length(Point a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 
 Point CubicBezier::at(double t) const {
   const double s = 1.0 - t;
@@ -140,11 +142,12 @@ Point CubicBezier::derivative(double t) const {
 }
 
 bool CubicBezier::constant_speed() const {
+  const auto size = [](Point p) { return std::max(std::abs(p.x), std::abs(p.y)); };
   const Point a = control[1] - control[0], b = control[2] - control[1], c = control[3] - control[2];
-  double size = 0.0;  // of the coordinates, whose rounding the differences carry
-  for (const Point& p : control) size = std::max({size, std::abs(p.x), std::abs(p.y)});
-  const double tiny = 1e-13 * (length(a) + length(b) + length(c)) + 1e-15 * size;
-  return length(b - a) <= tiny && length(c - b) <= tiny;
+  double largest = 0.0;  // of the coordinates, whose rounding the differences carry
+  for (const Point& p : control) largest = std::max(largest, size(p));
+  const double tiny = 1e-13 * (size(a) + size(b) + size(c)) + 1e-15 * largest;
+  return size(b - a) <= tiny && size(c - b) <= tiny;
 }
 
 CubicBezier CubicBezier::piece(double t0, double t1) const {
@@ -169,11 +172,15 @@ double arc_length(const std::vector<CubicBezier>& chain) {
   return sum;
 }
 
-std::vector<SegmentPair> matched(const CurvePair& pair) {
+bool one_to_one(const CurvePair& pair) {
   check_chain(pair.name, "source", pair.source);
   check_chain(pair.name, "target", pair.target);
+  return pair.source.size() == pair.target.size();
+}
+
+std::vector<SegmentPair> matched(const CurvePair& pair) {
   std::vector<SegmentPair> out;
-  if (pair.source.size() == pair.target.size()) {
+  if (one_to_one(pair)) {
     out.reserve(pair.source.size());
     for (std::size_t n = 0; n < pair.source.size(); ++n)
       out.push_back({pair.source[n], pair.target[n]});

@@ -50,9 +50,12 @@ struct Stay {
   Integral integral;
 };
 
-Point on_line(const CubicBezier& line, double t) {
-  return line.control[0] + t * (line.control[3] - line.control[0]);
-}
+/// Two straight segments of constant speed.
+struct ChordPair {
+  Point source, target;            // where they begin
+  Point source_move, target_move;  // from there to their ends
+  Point at(double t) const { return source + t * source_move; }
+};
 
 Integral gauss(const SegmentPair& pair, Cell cell, double t0, double t1) {
   Integral sum;
@@ -77,11 +80,11 @@ Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, con
 }
 
 /// Straight arcs at constant speed: weights are quadratic in t, which two points integrate exactly.
-Integral straight_arc(const SegmentPair& pair, Cell cell, double t0, double t1) {
+Integral straight_arc(const ChordPair& pair, Cell cell, double t0, double t1) {
   Integral sum;
-  const double speed = length(pair.source.control[3] - pair.source.control[0]);
+  const double speed = length(pair.source_move);
   for_two_gauss_points(t0, t1, [&](double t, double weight) {
-    sum.add_point(cell, on_line(pair.source, t), on_line(pair.target, t), weight * speed);
+    sum.add_point(cell, pair.at(t), pair.target + t * pair.target_move, weight * speed);
   });
   return sum;
 }
@@ -92,44 +95,77 @@ class Cutter {
       : lattice_(lattice), most_weight_(most_weight) {}
 
   void add(const CurvePair& curve) {
-    std::vector<SegmentPair> segments = matched(curve);
-    for (SegmentPair& pair : segments)
-      for (int n = 0; n < 4; ++n) {
-        Point& s = pair.source.control[std::size_t(n)];
-        Point& t = pair.target.control[std::size_t(n)];
-        s = lattice_.to_cells(s);
-        t = lattice_.to_cells(t);
-      }
     std::vector<Stay> stays;
-    std::vector<double> crossings;
-    for (const SegmentPair& pair : segments) add_segment(curve, pair, crossings, stays);
-    const Point gap = segments.front().source.at(0.0) - segments.back().source.at(1.0);
+    for_matched(curve, [&](const CubicBezier& source, const CubicBezier& target) {
+      if (source.constant_speed() && target.constant_speed())
+        add_straight(curve, source, target, stays);
+      else
+        add_curved(curve, source, target, stays);
+    });
+    const Point gap = lattice_.to_cells(curve.source.back().control[3]) -
+                      lattice_.to_cells(curve.source.front().control[0]);
     keep(stays, length(gap) < 1e-6, std::min(curve.weight, most_weight_));
   }
 
   CutCells finish();
 
  private:
-  void add_segment(const CurvePair& curve, const SegmentPair& pair, std::vector<double>& crossings,
-                   std::vector<Stay>& stays) const {
-    find_crossings(pair.source, crossings);
-    crossings.push_back(1.0);
-    const bool simple = pair.source.constant_speed() && pair.target.constant_speed();
+  void add_straight(const CurvePair& curve, const CubicBezier& source, const CubicBezier& target,
+                    std::vector<Stay>& stays) {
+    const Point begin = lattice_.to_cells(source.control[0]),
+                end = lattice_.to_cells(source.control[3]),
+                target_begin = lattice_.to_cells(target.control[0]),
+                target_end = lattice_.to_cells(target.control[3]);
+    const ChordPair pair{begin, target_begin, end - begin, target_end - target_begin};
+    crossings_.clear();
+    // Most chords of a polyline cross no line.
+    const bool stays_on =
+        !stays.empty() && inside(begin, stays.back().cell) && inside(end, stays.back().cell);
+    if (!stays_on) find_crossings(in_cells(source), crossings_);
+    add_pieces(
+        curve, stays, [&](double t) { return pair.at(t); },
+        [&](Cell cell, double t0, double t1) { return straight_arc(pair, cell, t0, t1); });
+  }
+
+  void add_curved(const CurvePair& curve, const CubicBezier& source, const CubicBezier& target,
+                  std::vector<Stay>& stays) {
+    const SegmentPair pair{in_cells(source), in_cells(target)};
+    find_crossings(pair.source, crossings_);
+    add_pieces(
+        curve, stays, [&](double t) { return pair.source.at(t); },
+        [&](Cell cell, double t0, double t1) {
+          return integrate(pair, cell, t0, t1, gauss(pair, cell, t0, t1), 20);
+        });
+  }
+
+  /// Files the integrals arc(cell, t0, t1) between crossings_ of a source at(t).
+  template <class At, class Arc>
+  void add_pieces(const CurvePair& curve, std::vector<Stay>& stays, At&& at, Arc&& arc) {
+    crossings_.push_back(1.0);
     double t0 = 0.0;
-    for (const double t1 : crossings) {
+    for (const double t1 : crossings_) {
       if (t1 <= t0) continue;
-      const Point middle =
-          simple ? on_line(pair.source, 0.5 * (t0 + t1)) : pair.source.at(0.5 * (t0 + t1));
+      const Point middle = at(0.5 * (t0 + t1));
       if (middle.x < -kSnap || middle.y < -kSnap || middle.x > lattice_.nx + kSnap ||
           middle.y > lattice_.ny + kSnap)
         refuse_outside(curve, middle, lattice_);
-      const Cell cell{cell_index(middle.x, lattice_.nx), cell_index(middle.y, lattice_.ny)};
-      const Integral arc = simple ? straight_arc(pair, cell, t0, t1)
-                                  : integrate(pair, cell, t0, t1, gauss(pair, cell, t0, t1), 20);
+      const bool stayed = !stays.empty() && inside(middle, stays.back().cell);
+      const Cell cell =
+          stayed ? stays.back().cell
+                 : Cell{cell_index(middle.x, lattice_.nx), cell_index(middle.y, lattice_.ny)};
       if (stays.empty() || !(stays.back().cell == cell)) stays.push_back({cell, {}});
-      stays.back().integral.add(arc);
+      stays.back().integral.add(arc(cell, t0, t1));
       t0 = t1;
     }
+  }
+
+  CubicBezier in_cells(CubicBezier curve) const {
+    for (Point& p : curve.control) p = lattice_.to_cells(p);
+    return curve;
+  }
+  static bool inside(Point p, Cell cell) {
+    const double x = p.x - cell.i, y = p.y - cell.j;
+    return std::min(x, y) > kSnap && std::max(x, y) < 1.0 - kSnap;
   }
 
   /// Drops stays that are too short, notes which cells follow one another, and files the rest.
@@ -154,6 +190,7 @@ class Cutter {
 
   const Lattice& lattice_;
   double most_weight_;
+  std::vector<double> crossings_;  // of the segment at hand
   std::vector<Stay> stays_;
   std::vector<std::array<std::ptrdiff_t, 2>> followers_;
 };

@@ -36,23 +36,33 @@ struct CellCorners {
   }
 };
 
-}  // namespace
-
 template <class T>
-T cut_compliance_diagonal(const Cuts<T>& cuts, int k) {
+T diagonal(const Cuts<T>& cuts, int k) {
   return cuts.compliance[k] + cuts.jump * cuts.link_diagonal[k];
 }
 
 template <class T>
-Pair<T> cut_compliance(const Cuts<T>& cuts, const T* q, int k) {
+[[gnu::always_inline]] inline Pair<T> compliance(const Cuts<T>& cuts, const T* q, int k) {
   T x = T(0), y = T(0);
   for (int l = cuts.link_begin[k]; l < cuts.link_begin[k + 1]; ++l) {
     const int other = cuts.link[l];
     x += cuts.link_strength[l] * q[2 * other];
     y += cuts.link_strength[l] * q[2 * other + 1];
   }
-  const T own = cut_compliance_diagonal(cuts, k);
+  const T own = diagonal(cuts, k);
   return {own * q[2 * k] - cuts.jump * x, own * q[2 * k + 1] - cuts.jump * y};
+}
+
+}  // namespace
+
+template <class T>
+T cut_compliance_diagonal(const Cuts<T>& cuts, int k) {
+  return diagonal(cuts, k);
+}
+
+template <class T>
+Pair<T> cut_compliance(const Cuts<T>& cuts, const T* q, int k) {
+  return compliance(cuts, q, k);
 }
 
 template <class T>
@@ -66,7 +76,7 @@ void add_curve_force(const Cuts<T>& cuts, const T* q, T scale, const Unknowns<T>
 template <class T>
 void apply_cuts(const Cuts<T>& cuts, const Unknowns<const T>& d, const T* q, T* out) {
   for_cuts(cuts, d.x.rows - 1, [&](int k, int i, int j) {
-    const Pair<T> m = cut_compliance(cuts, q, k);
+    const Pair<T> m = compliance(cuts, q, k);
     out[2 * k] = -(CellCorners<const T>(d.x, i, j).average(cuts.weight + 4 * k) + m.x);
     out[2 * k + 1] = -(CellCorners<const T>(d.y, i, j).average(cuts.weight + 4 * k) + m.y);
   });
@@ -75,7 +85,7 @@ void apply_cuts(const Cuts<T>& cuts, const Unknowns<const T>& d, const T* q, T* 
 template <class T>
 void cuts_residual(const Cuts<T>& cuts, const T* f, const Unknowns<const T>& d, const T* q, T* r) {
   for_cuts(cuts, d.x.rows - 1, [&](int k, int i, int j) {
-    const Pair<T> m = cut_compliance(cuts, q, k);
+    const Pair<T> m = compliance(cuts, q, k);
     r[2 * k] = f[2 * k] + (CellCorners<const T>(d.x, i, j).average(cuts.weight + 4 * k) + m.x);
     r[2 * k + 1] =
         f[2 * k + 1] + (CellCorners<const T>(d.y, i, j).average(cuts.weight + 4 * k) + m.y);
@@ -102,14 +112,14 @@ void relax_cut_in_blocks(const Membrane<T>& membrane, const Cuts<T>& cuts, const
                                          {membrane.inverse_block[1], i, j},
                                          {membrane.inverse_block[2], i, j}};
   const CellCorners<T> x(d.x, i, j), y(d.y, i, j);
-  T s[3] = {cut_compliance_diagonal(cuts, k), T(0), T(0)}, move[3][4];
+  T s[3] = {diagonal(cuts, k), T(0), T(0)}, move[3][4];
   s[2] = s[0];
   for (int e = 0; e < 3; ++e)
     for (int n = 0; n < 4; ++n) {
       move[e][n] = w[n] * *block[e].corner[n];
       s[e] += w[n] * move[e][n];
     }
-  const Pair<T> m = cut_compliance(cuts, dq, k);
+  const Pair<T> m = compliance(cuts, dq, k);
   const T rx = g[2 * k] + (x.average(w) + m.x), ry = g[2 * k + 1] + (y.average(w) + m.y);
   const T step = T(-1) / (s[0] * s[2] - s[1] * s[1]);
   const T tx = step * (s[2] * rx - s[1] * ry), ty = step * (s[0] * ry - s[1] * rx);
@@ -146,11 +156,11 @@ void relax_cuts_row(const Membrane<T>& membrane, const Cuts<T>& cuts, const T* g
       for (int c = 0; c < 4; ++c) inverse[c] = *at.corner[c];
     }
     const T move[4] = {w[0] * inverse[0], w[1] * inverse[1], w[2] * inverse[2], w[3] * inverse[3]};
-    const T s = (w[0] * move[0] + w[1] * move[1]) + (w[2] * move[2] + w[3] * move[3]) +
-                cut_compliance_diagonal(cuts, k);
+    const T s =
+        (w[0] * move[0] + w[1] * move[1]) + (w[2] * move[2] + w[3] * move[3]) + diagonal(cuts, k);
     const T step = T(-1) / s;
     const CellCorners<T> x(d.x, i, j), y(d.y, i, j);
-    const Pair<T> m = cut_compliance(cuts, dq, k);
+    const Pair<T> m = compliance(cuts, dq, k);
     const T tx = step * (g[2 * k] + (x.average(w) + m.x));
     const T ty = step * (g[2 * k + 1] + (y.average(w) + m.y));
     x.add(move, tx);

@@ -40,6 +40,7 @@ class Cycle {
   /// the curve forces of dq afterwards (and must do so before, if not from zero).
   void run(CycleKind kind, bool from_zero);
 
+  bool pressure() const { return pressure_; }
   /// The system of level l as the preconditioner sees it (with the jump term inside).
   kernels::LevelSystem<T> system(int l);
 

@@ -21,33 +21,28 @@ struct Motion {
   double angle = 0.0;
 };
 
-Motion motion(const std::vector<grid::SegmentPair>& segments, double turn_degrees) {
+Motion motion(const grid::CurvePair& curve) {
   // Polylines of thousands of chords need no more than their middles.
-  const int samples = segments.size() < 64 ? 8 : 1;
-  Motion m;
-  double total = 0.0;
-  auto sample = [&](auto&& visit) {
-    for (const grid::SegmentPair& pair : segments)
-      for (int n = 0; n < samples; ++n) {
-        const double t = (n + 0.5) / samples;
-        visit(pair.source.at(t), pair.target.at(t), grid::length(pair.source.derivative(t)));
-      }
-  };
-  sample([&](Point s, Point t, double ds) {
-    m.source = m.source + ds * s;
-    m.target = m.target + ds * t;
-    total += ds;
+  const int samples = std::max(curve.source.size(), curve.target.size()) < 64 ? 8 : 1;
+  Point source, target;
+  double total = 0.0, along = 0.0, across = 0.0;
+  grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& to) {
+    for (int n = 0; n < samples; ++n) {
+      const double t = (n + 0.5) / samples, ds = grid::length(from.derivative(t));
+      const Point s = from.at(t) - curve.source.front().control[0], moved = to.at(t);
+      source = source + ds * s;
+      target = target + ds * moved;
+      along += ds * grid::dot(s, moved);
+      across += ds * grid::cross(s, moved);
+      total += ds;
+    }
   });
-  m.source = (1.0 / total) * m.source;
-  m.target = (1.0 / total) * m.target;
-  double along = 0.0, across = 0.0;
-  sample([&](Point s, Point t, double ds) {
-    along += ds * grid::dot(s - m.source, t - m.target);
-    across += ds * grid::cross(s - m.source, t - m.target);
-  });
-  m.angle = std::atan2(across, along);
-  if (turn_degrees != 0.0) {
-    const double full = 2.0 * std::numbers::pi, wanted = turn_degrees / 360.0 * full;
+  // About the centroids.
+  Motion m{(1.0 / total) * source, (1.0 / total) * target};
+  m.angle = std::atan2(across - grid::cross(source, m.target), along - grid::dot(source, m.target));
+  m.source = m.source + curve.source.front().control[0];
+  if (curve.turn_degrees != 0.0) {
+    const double full = 2.0 * std::numbers::pi, wanted = curve.turn_degrees / 360.0 * full;
     m.angle += full * std::round((wanted - m.angle) / full);
   }
   return m;
@@ -55,9 +50,7 @@ Motion motion(const std::vector<grid::SegmentPair>& segments, double turn_degree
 
 }  // namespace
 
-double turning_angle(const grid::CurvePair& curve) {
-  return motion(grid::matched(curve), curve.turn_degrees).angle;
-}
+double turning_angle(const grid::CurvePair& curve) { return motion(curve).angle; }
 
 double largest_turn(const std::vector<grid::CurvePair>& curves) {
   double largest = 0.0;
@@ -70,20 +63,19 @@ std::vector<grid::CurvePair> partway(const std::vector<grid::CurvePair>& curves,
   std::vector<grid::CurvePair> out;
   for (const grid::CurvePair& curve : curves) {
     grid::CurvePair part{curve.name, {}, {}, curve.weight, curve.turn_degrees};
-    const std::vector<grid::SegmentPair> segments = grid::matched(curve);
-    const Motion m = motion(segments, curve.turn_degrees);
+    const Motion m = motion(curve);
     const Point centre = (1.0 - t) * m.source + t * m.target;
-    for (const grid::SegmentPair& pair : segments) {
-      part.source.push_back(pair.source);
+    grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& to) {
+      part.source.push_back(from);
       grid::CubicBezier target;
       for (std::size_t n = 0; n < 4; ++n) {
         // Seen from the turned source, the target's own shape grows linearly.
-        const Point s = pair.source.control[n] - m.source;
-        const Point shape = turned(pair.target.control[n] - m.target, -m.angle);
+        const Point s = from.control[n] - m.source;
+        const Point shape = turned(to.control[n] - m.target, -m.angle);
         target.control[n] = centre + turned((1.0 - t) * s + t * shape, t * m.angle);
       }
       part.target.push_back(target);
-    }
+    });
     out.push_back(std::move(part));
   }
   return out;

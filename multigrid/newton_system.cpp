@@ -12,12 +12,17 @@ namespace drumhead::multigrid {
 template <class T>
 NewtonSystem<T>::NewtonSystem(Hierarchy<T>& hierarchy, int top, bool pressure,
                               grid::MemoryMeter& meter)
-    : hierarchy_(hierarchy), top_(top), pressure_(pressure), meter_(meter) {}
+    : hierarchy_(hierarchy), top_(top), pressure_(pressure), meter_(meter) {
+  if (!level().conforming) return;
+  special_ = level().conforming->rows;
+  special_.linearise(membrane());
+}
 
 template <class T>
 kernels::Membrane<T> NewtonSystem<T>::membrane() const {
   kernels::Membrane<T> m = pressure_ ? level().membrane() : level().harmonic();
   m.pressure_jump = T(0);  // for levels below the one that is solved
+  if (level().conforming) m.special = &special_;
   return m;
 }
 
@@ -35,8 +40,11 @@ kernels::Unknowns<T> NewtonSystem<T>::correction() const {
 
 template <class T>
 Vector<T> NewtonSystem<T>::make_vector() const {
-  return {grid::UnknownFields<T>(level().nx, level().ny, pressure_, meter_),
-          std::vector<T>(level().q.size(), T(0))};
+  Vector<T> vector{
+      grid::UnknownFields<T>(level().nx, level().ny, pressure_ && level().pressure, meter_),
+      std::vector<T>(level().q.size(), T(0))};
+  if (pressure_) vector.fields.listed.assign(level().d.listed.size(), T(0));
+  return vector;
 }
 
 template <class T>
@@ -76,19 +84,27 @@ void NewtonSystem<T>::combine(double a, const Vector<T>& x, double b, Vector<T>&
 }
 
 template <class T>
-double NewtonSystem<T>::dot(const Vector<T>& a, const Vector<T>& b) const {
-  double sum = kernels::dot<T>(a.fields.view(), b.fields.view());
+double NewtonSystem<T>::dot(const Vector<T>& a, const Vector<T>& b, double volume_weight) const {
+  const auto av = a.fields.view(), bv = b.fields.view();
+  double sum = kernels::dot<T>(av.x, bv.x) + kernels::dot<T>(av.y, bv.y) +
+               volume_weight * (kernels::dot<T>(av.p, bv.p) + kernels::dot_listed<T>(av, bv));
   for (std::size_t k = 0; k < a.q.size(); ++k) sum += double(a.q[k]) * double(b.q[k]);
   return sum;
 }
 
 template <class T>
+double NewtonSystem<T>::dot(const Vector<T>& a, const Vector<T>& b) const {
+  return dot(a, b, 1.0);
+}
+
+template <class T>
+double NewtonSystem<T>::product_of_residuals(const Vector<T>& a, const Vector<T>& b) const {
+  return dot(a, b, 1.0 / double(level().spacing * level().spacing));
+}
+
+template <class T>
 double NewtonSystem<T>::norm(const Vector<T>& r) const {
-  const auto view = r.fields.view();
-  double sum = kernels::dot<T>(view.x, view.x) + kernels::dot<T>(view.y, view.y) +
-               kernels::dot<T>(view.p, view.p) / double(level().spacing * level().spacing);
-  for (const T value : r.q) sum += double(value) * double(value);
-  return std::sqrt(sum);
+  return std::sqrt(product_of_residuals(r, r));
 }
 
 template class NewtonSystem<float>;

@@ -43,15 +43,20 @@ class NewtonSystem {
   void combine(double a, const Vector<T>& x, double b, Vector<T>& y) const;
   /// Σ a b over all unknowns.
   double dot(const Vector<T>& a, const Vector<T>& b) const;
-  /// Norm by which residuals are judged: volume rows per cell side, so that rows are of one size on
-  /// every level.
+  /// Σ a b with volume rows per cell side, so that rows are of one size on every level; and the
+  /// norm of it, by which residuals are judged.
+  double product_of_residuals(const Vector<T>& a, const Vector<T>& b) const;
   double norm(const Vector<T>& r) const;
 
  private:
+  double dot(const Vector<T>& a, const Vector<T>& b, double volume_weight) const;
+
   Hierarchy<T>& hierarchy_;
   int top_;
   bool pressure_;
   grid::MemoryMeter& meter_;
+  /// At the level's own clamp, where its lattice conforms to curves: cycles have them with theirs.
+  kernels::SpecialRows<T> special_;
 };
 
 }  // namespace drumhead::multigrid

@@ -6,6 +6,7 @@
 // t) gives one constraint point; `matched` makes the chains have equal numbers of segments when
 // they have not.
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ inline Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
 inline double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
 inline double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 /// |a|
-double length(Point a);
+inline double length(Point a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 
 /// One cubic Bézier segment, t in [0, 1].
 struct CubicBezier {
@@ -64,5 +65,19 @@ struct SegmentPair {
 /// relative arc length by less than 1e-4 of the chain). Throws std::invalid_argument naming the
 /// curve when a chain is empty, has no length or holds a point that is not finite.
 std::vector<SegmentPair> matched(const CurvePair& pair);
+
+/// Whether both chains have the same number of segments. Throws as `matched` does.
+bool one_to_one(const CurvePair& pair);
+
+/// Calls f(source, target) for the segments of `matched`, which are copied only where chains are
+/// not one to one: a polyline may have thousands.
+template <class F>
+void for_matched(const CurvePair& pair, F&& f) {
+  if (one_to_one(pair)) {
+    for (std::size_t n = 0; n < pair.source.size(); ++n) f(pair.source[n], pair.target[n]);
+  } else {
+    for (const SegmentPair& segment : matched(pair)) f(segment.source, segment.target);
+  }
+}
 
 }  // namespace drumhead::grid
