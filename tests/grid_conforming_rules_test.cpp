@@ -230,15 +230,15 @@ TEST(GridConformingRules, PartsAreFoundByTheirPoints) {
 
 TEST(GridConformingRules, BadInputIsRefusedByName) {
   const Lattice lattice = unit_lattice(5, 5);
-  EXPECT_NE(refusal_of([&] {
+  EXPECT_NE(tests::refusal([&] {
               (void)conform({soft(pin({{1, 1}, {2, 2}}), 0.0)}, lattice);
             }).find("'pin': weight = 0"),
             std::string::npos);
-  EXPECT_NE(refusal_of([&] {
+  EXPECT_NE(tests::refusal([&] {
               (void)conform({pin({{1, 1}, {7, 2}})}, lattice);
             }).find("leaves the lattice"),
             std::string::npos);
-  EXPECT_NE(refusal_of([&] { (void)conform({}, lattice, {.snap = 0.3}); }).find("snap = 0.3"),
+  EXPECT_NE(tests::refusal([&] { (void)conform({}, lattice, {.snap = 0.3}); }).find("snap = 0.3"),
             std::string::npos);
 }
 

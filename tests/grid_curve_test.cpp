@@ -145,19 +145,19 @@ TEST(GridCurve, SplittingASegmentOfTheSourceKeepsWhereItsPointsGo) {
 }
 
 TEST(GridCurve, AnEmptyChainIsRefused) {
-  EXPECT_EQ(refusal_of([] { (void)matched({.name = "lip", .target = {kBow}}); }),
+  EXPECT_EQ(tests::refusal([] { (void)matched({.name = "lip", .target = {kBow}}); }),
             "curve 'lip': the source is empty");
-  EXPECT_EQ(refusal_of([] { (void)matched({.name = "lip", .source = {kBow}}); }),
+  EXPECT_EQ(tests::refusal([] { (void)matched({.name = "lip", .source = {kBow}}); }),
             "curve 'lip': the target is empty");
 }
 
 TEST(GridCurve, AChainWithoutLengthIsRefused) {
   const CubicBezier point = straight({2, 2}, {2, 2});
   EXPECT_EQ(
-      refusal_of([&] { (void)matched({.name = "dot", .source = {point}, .target = {kBow}}); }),
+      tests::refusal([&] { (void)matched({.name = "dot", .source = {point}, .target = {kBow}}); }),
       "curve 'dot': the source has no length");
   EXPECT_EQ(
-      refusal_of([&] { (void)matched({.name = "dot", .source = {kBow}, .target = {point}}); }),
+      tests::refusal([&] { (void)matched({.name = "dot", .source = {kBow}, .target = {point}}); }),
       "curve 'dot': the target has no length");
 }
 
@@ -166,12 +166,12 @@ TEST(GridCurve, APointThatIsNotFiniteIsRefused) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     CubicBezier broken = kBow;
     broken.control[2].y = bad;
-    EXPECT_EQ(
-        refusal_of([&] { (void)matched({.name = "far", .source = {broken}, .target = {kBow}}); }),
-        "curve 'far': the source has a point that is not finite");
-    EXPECT_EQ(
-        refusal_of([&] { (void)matched({.name = "far", .source = {kBow}, .target = {broken}}); }),
-        "curve 'far': the target has a point that is not finite");
+    EXPECT_EQ(tests::refusal(
+                  [&] { (void)matched({.name = "far", .source = {broken}, .target = {kBow}}); }),
+              "curve 'far': the source has a point that is not finite");
+    EXPECT_EQ(tests::refusal(
+                  [&] { (void)matched({.name = "far", .source = {kBow}, .target = {broken}}); }),
+              "curve 'far': the target has a point that is not finite");
   }
 }
 

@@ -294,7 +294,7 @@ TEST(GridCutCells, ASourceThatLeavesTheLatticeIsRefusedByNameAndPlace) {
   const Lattice lattice{.nx = 12, .ny = 9, .cell_px = 10.0, .origin_px = {-20, 0}, .side_px = 100};
   CurvePair curve = pin({{50, 50}, {130, 50}});
   curve.name = "brow";
-  const std::string text = refusal_of([&] { (void)cut({curve}, lattice, kInfinity); });
+  const std::string text = tests::refusal([&] { (void)cut({curve}, lattice, kInfinity); });
   EXPECT_TRUE(text.starts_with("curve 'brow': the source leaves the lattice at (")) << text;
   EXPECT_TRUE(text.ends_with("reaches from (-20.000000, 0.000000) to (100.000000, 90.000000)"))
       << text;
@@ -302,7 +302,7 @@ TEST(GridCutCells, ASourceThatLeavesTheLatticeIsRefusedByNameAndPlace) {
 
 TEST(GridCutCells, EverySideIsGuarded) {
   for (const Point out : {Point{-0.5, 4}, Point{12.5, 4}, Point{4, -0.5}, Point{4, 9.5}})
-    EXPECT_FALSE(refusal_of([&] { (void)cut_one(pin({{5, 5}, out})); }).empty());
+    EXPECT_FALSE(tests::refusal([&] { (void)cut_one(pin({{5, 5}, out})); }).empty());
 }
 
 TEST(GridCutCells, ATargetMayLeaveTheLattice) {
@@ -315,7 +315,7 @@ TEST(GridCutCells, AWeightThatIsNotPositiveIsRefused) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     CurvePair curve = pin({{5, 5}, {7, 5}});
     curve.weight = bad;
-    const std::string text = refusal_of([&] { (void)cut_one(curve); });
+    const std::string text = tests::refusal([&] { (void)cut_one(curve); });
     EXPECT_TRUE(text.starts_with("curve 'pin': weight = ")) << text;
     EXPECT_TRUE(text.ends_with("must be positive (infinity allowed)")) << text;
   }

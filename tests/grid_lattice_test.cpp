@@ -131,7 +131,7 @@ TEST(GridLattice, OddCountsCoarsenUpwards) {
 
 /// What make_lattice says, empty if it accepts.
 std::string refusal(double width, double height, const LatticeOptions& options) {
-  return refusal_of([&] { (void)make_lattice(width, height, options); });
+  return tests::refusal([&] { (void)make_lattice(width, height, options); });
 }
 
 TEST(GridLattice, RefusesAPictureWithoutArea) {

@@ -111,10 +111,10 @@ TEST(GridMask, AMaskMeansTheSameOnALatticeOfHalfAsManyCells) {
 TEST(GridMask, RefusesWhatHasNoValueAndNamesIt) {
   const Lattice cells = lattice(4, 2, 1.0);
   const auto mu_refusal = [&](const Mask& m) {
-    return refusal_of([&] { (void)mu_cells(m, cells); });
+    return tests::refusal([&] { (void)mu_cells(m, cells); });
   };
   const auto kappa_refusal = [&](const Mask& m) {
-    return refusal_of([&] { (void)kappa_cells(m, cells); });
+    return tests::refusal([&] { (void)kappa_cells(m, cells); });
   };
   EXPECT_EQ(mu_refusal(steps(0.0, 1.0)), "black = 0.000000: must be finite and above 0");
   EXPECT_EQ(kappa_refusal(steps(0.0, 1.0)), "");

@@ -17,7 +17,7 @@ constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 std::string refusal(const Material& material) {
-  return refusal_of([&] { check(material, {.nx = 3, .ny = 2}); });
+  return tests::refusal([&] { check(material, {.nx = 3, .ny = 2}); });
 }
 
 TEST(GridMaterial, AcceptsKappaFromZeroToInfinity) {

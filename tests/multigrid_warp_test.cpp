@@ -46,8 +46,8 @@ TEST_P(StartRefusal, NamesWhatIsMissingOrNotFinite) {
     return refused(problem, {.curve_method = GetParam(), .start = &start});
   };
   const std::string begin = "the solution to start from: ";
-  EXPECT_EQ(started([](Solution&) {}), "accepted");
-  EXPECT_EQ(started([](Solution& s) { s.pressure.clear(); }), "accepted");
+  EXPECT_EQ(started([](Solution&) {}), "");
+  EXPECT_EQ(started([](Solution& s) { s.pressure.clear(); }), "");
   EXPECT_EQ(started([](Solution& s) { s.u_px.pop_back(); }),
             begin + "1088 values of u_px: must be 1089");
   EXPECT_EQ(started([](Solution& s) { s.v_px.clear(); }), begin + "0 values of v_px: must be 1089");

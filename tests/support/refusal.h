@@ -6,7 +6,7 @@
 
 namespace drumhead::tests {
 
-/// The message with which `action` is refused as bad input; "accepted" if it is not.
+/// The message with which `action` is refused as bad input; empty if it is not.
 template <class Action>
 std::string refusal(const Action& action) {
   try {
@@ -14,7 +14,7 @@ std::string refusal(const Action& action) {
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
-  return "accepted";
+  return {};
 }
 
 }  // namespace drumhead::tests
