@@ -12,7 +12,7 @@ constexpr std::size_t kAlignment = 64;
 }  // namespace
 
 template <class T>
-Field<T>::Field(int columns, int rows, MemoryMeter& meter) : meter_(&meter) {
+Field<T>::Field(int columns, int rows, MemoryMeter* meter) : meter_(meter) {
   constexpr int per_line = int(kAlignment / sizeof(T));
   const std::ptrdiff_t half = (columns + 1) / 2;
   plane_.odd = (half + per_line - 1) / per_line * per_line;
@@ -20,14 +20,14 @@ Field<T>::Field(int columns, int rows, MemoryMeter& meter) : meter_(&meter) {
   plane_.columns = columns;
   plane_.rows = rows;
   plane_.data = static_cast<T*>(::operator new(bytes(), std::align_val_t(kAlignment)));
-  meter_->add(bytes());
+  if (meter_) meter_->add(bytes());
   clear();
 }
 
 template <class T>
 Field<T>::~Field() {
   if (!plane_) return;
-  meter_->remove(bytes());
+  if (meter_) meter_->remove(bytes());
   ::operator delete(plane_.data, std::align_val_t(kAlignment));
 }
 

@@ -39,9 +39,8 @@ TYPED_TEST(GridField, HalvesAndRowsDoNotOverlap) {
   }
 }
 
-TYPED_TEST(GridField, BeginsAtZero) {
-  MemoryMeter meter;
-  const Field<TypeParam> field(9, 4, meter);
+TYPED_TEST(GridField, BeginsAtZeroWithoutAMeterToo) {
+  const Field<TypeParam> field(9, 4);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 9; ++i) EXPECT_EQ(field.view().at(i, j), TypeParam(0));
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A field that owns its memory: one number per node or cell in the split rows of kernels/views.h,
-// aligned to 64 bytes and zero at first. Its bytes are counted by a meter, so that a solver can say
-// what it took.
+// aligned to 64 bytes and zero at first. A meter may count its bytes, so that a solver can say what
+// it took.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -32,7 +32,9 @@ class Field {
  public:
   Field() = default;
   /// columns × rows values, all 0. Throws std::bad_alloc. `meter` must outlive the field.
-  Field(int columns, int rows, MemoryMeter& meter);
+  Field(int columns, int rows, MemoryMeter& meter) : Field(columns, rows, &meter) {}
+  /// The same, counted by no meter.
+  Field(int columns, int rows) : Field(columns, rows, nullptr) {}
   Field(Field&& other) noexcept { swap(other); }
   Field& operator=(Field&& other) noexcept {
     Field moved(std::move(other));
@@ -51,6 +53,7 @@ class Field {
   void clear();
 
  private:
+  Field(int columns, int rows, MemoryMeter* meter);
   void swap(Field& other) noexcept {
     std::swap(plane_, other.plane_);
     std::swap(meter_, other.meter_);
