@@ -152,10 +152,9 @@ const std::array kKeys = {
     Key{.name = "curve_method",
         .value = "NAME",
         .bound = "one of: auto, averaged, conforming",
-        .help =
-            "averaged: curves are met on average in each cell, an error of first order in the "
-            "cell size; conforming: cells are divided along them, second order, weight inf only; "
-            "auto: conforming for weight inf, crpm or harmonic",
+        .help = "averaged: curves are met on average in each cell, an error of first order in the "
+                "cell size; conforming: cells are divided along them, second order; "
+                "auto: conforming for weight inf, crpm or harmonic",
         .fallback = "auto",
         .set = set_curve_method},
     Key{.name = "exact",

@@ -9,6 +9,7 @@
 #include "isotropic.h"
 #include "kernel_table.h"
 #include "parallel.h"
+#include "soft_sweeps.h"
 #include "special_energy.h"
 #include "special_sweeps.h"
 
@@ -35,6 +36,7 @@ void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unkno
     if (d.p) kernels.apply_cells(m, nullptr, d, out.p.row(j), j);
     overwrite<T>(m, nullptr, d, out, j);
   });
+  if (m.special) write_curve_rows<T>(*m.special, nullptr, d, out);
 }
 
 template <class T>
@@ -47,6 +49,7 @@ void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
     if (d.p) kernels.residual_cells(m, &f, d, r.p.row(j), j);
     overwrite<T>(m, &f, d, r, j);
   });
+  if (m.special) write_curve_rows<T>(*m.special, &f, d, r);
 }
 
 template <class T>
@@ -87,6 +90,7 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
     sums.elastic += row.elastic;
     sums.volume += row.volume;
     sums.volume_merit += row.volume_merit;
+    sums.constraint += row.constraint;
     sums.inverted_cells += row.inverted_cells;
     if (row.least_J < sums.least_J || std::isnan(row.least_J)) sums.least_J = row.least_J;
   }

@@ -62,6 +62,8 @@ void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y) {
   const int count = x.p && y.p ? std::min(x.listed_count, y.listed_count) : 0;
   for (int k = 0; k < count; ++k)
     y.listed[k] = a * x.listed[k] + (b == T(0) ? T(0) : b * y.listed[k]);
+  for (int k = 0; k < std::min(x.curve_count, y.curve_count); ++k)
+    y.curve[k] = a * x.curve[k] + (b == T(0) ? T(0) : b * y.curve[k]);
 }
 
 template <class T>
@@ -72,7 +74,16 @@ double dot_listed(const Unknowns<const T>& a, const Unknowns<const T>& b) {
   return sum;
 }
 
+template <class T>
+double dot_curve(const Unknowns<const T>& a, const Unknowns<const T>& b) {
+  double sum = 0.0;
+  for (int k = 0; k < std::min(a.curve_count, b.curve_count); ++k)
+    sum += double(a.curve[k]) * double(b.curve[k]);
+  return sum;
+}
+
 #define DRUMHEAD_INSTANTIATE(T)                                                   \
+  template double dot_curve(const Unknowns<const T>&, const Unknowns<const T>&);  \
   template double dot(const Plane<const T>&, const Plane<const T>&);              \
   template double dot(const Unknowns<const T>&, const Unknowns<const T>&);        \
   template double dot_listed(const Unknowns<const T>&, const Unknowns<const T>&); \

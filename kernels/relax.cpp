@@ -8,6 +8,7 @@
 #include "isotropic.h"
 #include "kernel_table.h"
 #include "parallel.h"
+#include "restriction.h"
 #include "special_sweeps.h"
 
 namespace drumhead::kernels {
@@ -37,6 +38,12 @@ T* RowScratch<T>::parts(int count) {
   return parts_.data();
 }
 
+template <class T>
+T* RowScratch<T>::curves(int count) {
+  if (curves_.size() < std::size_t(count)) curves_.resize(std::size_t(count));
+  return curves_.data();
+}
+
 namespace {
 
 template <class T>
@@ -44,117 +51,6 @@ void clear_row(const Plane<T>& plane, int j) {
   for (int parity = 0; parity < 2; ++parity)
     std::fill_n(plane.half(j, parity), half_count(plane.columns, parity), T(0));
 }
-
-/// Residual row j of a level into buffers that served other levels: nodes on the fixed boundary get
-/// 0.
-template <class T>
-void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
-                  const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& x,
-                  const SplitRow<T>& y, int j) {
-  kernels.residual_nodes(membrane, &f, d, x, y, j);
-  const int last = d.x.columns - 1;
-  for (const SplitRow<T>& row : {x, y}) row.half[0][0] = row.half[last & 1][last >> 1] = T(0);
-  if (membrane.special) overwrite_near_row(*membrane.special, &f, d, x, y, j);
-}
-
-/// Residual of cell row j: 0 at special cells, that of their parts in `parts`.
-template <class T>
-void residual_cell_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
-                       const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& p,
-                       T* parts, int j) {
-  kernels.residual_cells(membrane, &f, d, p, j);
-  if (membrane.special) overwrite_part_row(*membrane.special, &f, d, p, parts, j);
-}
-
-/// Room for the residuals of all parts of a level's special cells.
-template <class T>
-T* part_residuals(const Membrane<T>& membrane, RowScratch<T>& scratch) {
-  return membrane.special ? scratch.parts(membrane.special->cells().parts()) : nullptr;
-}
-
-/// Fills coarse rows from the residual of a level, called with ascending rows of each thread's
-/// chunk.
-template <class T>
-class Restriction {
- public:
-  Restriction(const LevelSystem<T>& level, const Unknowns<T>& coarse, RowScratch<T>& scratch)
-      : level_(level),
-        coarse_(coarse),
-        scratch_(scratch),
-        parts_(part_residuals(level.membrane, scratch)),
-        kernels_(table<T>()) {
-    scratch.forget();
-  }
-
-  /// After cell row j (and node rows up to j) are final: restricts what they complete.
-  void operator()(int j, int thread) {
-    const int ny = level_.d.x.rows - 1, coarse_row = j / 2;
-    if (j % 2 == 0 && j + 1 < ny) return;
-    typename RowScratch<T>::Rows& rows = scratch_.rows(thread);
-    if (coarse_row >= 1 && coarse_row < coarse_.x.rows - 1) {
-      const int middle = 2 * coarse_row;
-      const int below = hold(rows, middle - 1), centre = hold(rows, middle);
-      const bool has_above = middle + 1 < ny;
-      const int above = has_above ? hold(rows, middle + 1) : 0;
-      restrict_component(rows.x, below, centre, above, has_above, coarse_.x, coarse_row);
-      restrict_component(rows.y, below, centre, above, has_above, coarse_.y, coarse_row);
-    }
-    if (level_.d.p) restrict_cells(rows, coarse_row);
-    if (level_.coarse_special) restrict_parts(rows, coarse_row);
-  }
-
- private:
-  SplitRow<T> split(T* row) const { return {{row, row + scratch_.odd()}}; }
-  static SplitRow<const T> as_const(const SplitRow<T>& row) { return {{row.half[0], row.half[1]}}; }
-
-  void restrict_cells(const typename RowScratch<T>::Rows& rows, int coarse_row) const {
-    const int first = 2 * coarse_row;
-    const bool pair = first + 1 < level_.d.p.rows;
-    for (int n = 0; n <= int(pair); ++n)
-      residual_cell_row(kernels_, level_.membrane, f_, d_, split(rows.p[n]), parts_, first + n);
-    const SplitRow<const T> upper = as_const(split(rows.p[1]));
-    kernels_.sum_cells(as_const(split(rows.p[0])), pair ? &upper : nullptr, level_.d.p.columns,
-                       coarse_.p, coarse_row);
-  }
-
-  void restrict_parts(const typename RowScratch<T>::Rows& rows, int coarse_row) const {
-    clear_without_equation(*level_.coarse_special, coarse_, coarse_row);
-    if (!level_.d.p) return;
-    for (int j = 2 * coarse_row; j < std::min(2 * coarse_row + 2, level_.d.p.rows); ++j)
-      add_restricted_parts<T>(*level_.transfer, parts_, split(rows.p[j & 1]), coarse_, j);
-  }
-
-  /// Index of the buffer that holds residual row j, computing it if it is not there.
-  int hold(typename RowScratch<T>::Rows& rows, int j) {
-    const int slot = j & 3;
-    if (rows.held[slot] != j) {
-      residual_row(kernels_, level_.membrane, f_, d_, split(rows.x[slot]), split(rows.y[slot]), j);
-      rows.held[slot] = j;
-    }
-    return slot;
-  }
-
-  void restrict_component(T* const (&buffers)[4], int below, int centre, int above, bool has_above,
-                          const Plane<T>& out, int coarse_row) const {
-    const SplitRow<const T> upper = as_const(split(buffers[above]));
-    kernels_.restrict_nodes(as_const(split(buffers[below])), as_const(split(buffers[centre])),
-                            has_above ? &upper : nullptr, level_.d.x.columns, out, coarse_row);
-    if (!level_.coarse_special) return;
-    const int middle = 2 * coarse_row;
-    add_restricted_nodes(*level_.transfer, as_const(split(buffers[below])), middle - 1, out,
-                         coarse_row);
-    add_restricted_nodes(*level_.transfer, as_const(split(buffers[centre])), middle, out,
-                         coarse_row);
-    if (has_above) add_restricted_nodes(*level_.transfer, upper, middle + 1, out, coarse_row);
-  }
-
-  const LevelSystem<T>& level_;
-  const Unknowns<T>& coarse_;
-  RowScratch<T>& scratch_;
-  T* parts_;
-  const KernelTable<T>& kernels_;
-  const Unknowns<const T> f_ = level_.f, d_ = level_.d;
-};
 
 /// The sweeps of one relaxation in order.
 enum class Sweep { clear, prolong, start, nodes, near, volume, parts, cuts, nothing, restriction };
@@ -220,6 +116,7 @@ class Relaxation {
   void clear(int j) const {
     clear_row(d_.x, j);
     clear_row(d_.y, j);
+    if (special_) clear_curve_row(*special_, d_, j);
     if (!d_.p) return;
     clear_row(d_.p, j);
     if (special_) clear_part_row(special_->cells(), d_.listed, j);
@@ -239,7 +136,10 @@ class Relaxation {
     keeping_near(colour, kept, j,
                  [&] { kernels_.relax_nodes(level_.membrane, f_, d_, colour, {}, j); });
   }
-  void near(int j) const { relax_near_row(*special_, f_, d_, j); }
+  void near(int j) const {
+    relax_near_row(*special_, f_, d_, j);
+    relax_curve_row(*special_, f_, d_, j);
+  }
   void volume(int parity, bool reverse, T* kept, int j) const {
     auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, {}, j); };
     if (!special_) return sweep();
@@ -300,7 +200,7 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
         if (j > 0) relaxation.nodes(stage.colour, kept, j);
         break;
       case Sweep::near:
-        if (j > 0 && (j & 1) == stage.colour) relaxation.near(j);
+        if ((j & 1) == stage.colour) relaxation.near(j);
         break;
       case Sweep::volume:
         if ((j & 1) != stage.colour) break;
@@ -320,6 +220,7 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
         break;
     }
   });
+  if (coarse_f) restriction.finish();
 }
 
 template <class T>
@@ -381,6 +282,7 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   });
   double total = 0.0;
   for (const double sum : of_row) total += sum;
+  if (level.membrane.special) total += curve_squares(*level.membrane.special, f, d);
   return total;
 }
 

@@ -67,6 +67,39 @@ Vector2<T> regular_force(const Membrane<T>& m, int i, int j, int q) {
   return force;
 }
 
+/// Adds to the force on a vertex of special cell n = (i, j); those on known nodes are not kept.
+template <class T>
+void add_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j, int vertex,
+               Vector2<T> force) {
+  if (vertex >= kFirstCrossing) {
+    const std::size_t c = std::size_t(vertex - kFirstCrossing);
+    if (!rows.soft() || rows.cells().crossing[c].known()) return;
+    f.curve[2 * c] += force.x;
+    f.curve[2 * c + 1] += force.y;
+  } else if (rows.unknown_corner(n, vertex) >= 0) {
+    f.x.at(i + (vertex & 1), j + (vertex >> 1)) += force.x;
+    f.y.at(i + (vertex & 1), j + (vertex >> 1)) += force.y;
+  }
+}
+
+/// Forces of the springs, before all others on curve nodes, after the regular ones on lattice
+/// nodes.
+template <class T>
+void add_spring_force(const SpecialCells<T>& cells, const Unknowns<T>& f) {
+  for (int j = 0; j + 1 < int(cells.held_begin.size()); ++j)
+    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
+      const HeldNode<T>& node = cells.held[std::size_t(k)];
+      if (node.known()) continue;
+      f.x.at(node.place, j) -= node.stiffness * node.off_x;
+      f.y.at(node.place, j) -= node.stiffness * node.off_y;
+    }
+  for (int c = 0; c < f.curve_count / 2; ++c) {
+    const HeldNode<T>& node = cells.crossing[std::size_t(c)];
+    f.curve[2 * c] = node.known() ? T(0) : -node.stiffness * node.off_x;
+    f.curve[2 * c + 1] = node.known() ? T(0) : -node.stiffness * node.off_y;
+  }
+}
+
 template <class T>
 void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i, int j) {
   const SpecialRows<T>& rows = *m.special;
@@ -79,11 +112,10 @@ void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i
         gradient(triangle, [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); });
     const T scale = mu * triangle.area;
     for (std::size_t a = 0; a < 3; ++a) {
-      const int c = triangle.vertex[a];
-      if (c >= kFirstCrossing || rows.unknown_corner(n, c) < 0) continue;
       const T gx = triangle.gx[a], gy = triangle.gy[a];
-      f.x.at(i + (c & 1), j + (c >> 1)) -= scale * (gx + (g.xx * gx + g.xy * gy));
-      f.y.at(i + (c & 1), j + (c >> 1)) -= scale * (gy + (g.yx * gx + g.yy * gy));
+      add_force(
+          f, rows, n, i, j, triangle.vertex[a],
+          {-(scale * (gx + (g.xx * gx + g.xy * gy))), -(scale * (gy + (g.yx * gx + g.yy * gy)))});
     }
   }
 }
@@ -98,13 +130,12 @@ bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, in
             end = cells.vertex_begin[std::size_t(p) + 1];
   const T half = T(0.5) * m.listed[p];
   for (int v = begin; v < end; ++v) {
-    const int c = cells.vertex[std::size_t(v)].vertex;
-    if (c >= kFirstCrossing || rows.unknown_corner(n, c) < 0) continue;
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
     const Vector2<T> to = displacement(next.vertex), from = displacement(previous.vertex);
-    f.x.at(i + (c & 1), j + (c >> 1)) -= half * ((next.y - previous.y) + (to.y - from.y));
-    f.y.at(i + (c & 1), j + (c >> 1)) += half * ((next.x - previous.x) + (to.x - from.x));
+    add_force(f, rows, n, i, j, cells.vertex[std::size_t(v)].vertex,
+              {-(half * ((next.y - previous.y) + (to.y - from.y))),
+               half * ((next.x - previous.x) + (to.x - from.x))});
   }
   const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, displacement);
   f.listed[p] = area * compliance_at(m, i, j) * m.listed[p] - change;
@@ -124,7 +155,7 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
   const SpecialRows<T>& rows = *m.special;
   int inverted = 0;
   for (int j = 1; j + 1 < m.ux.rows; ++j) {
-    for (const int i : rows.held(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
+    for (const int i : rows.known(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
       const NearRow<T>& row = rows.near(n);
       Vector2<T> sum{T(0), T(0)};
@@ -137,6 +168,7 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
       f.y.at(row.column, j) = sum.y;
     }
   }
+  add_spring_force(rows.cells(), f);
   for_special(rows.cells(), [&](int n, int i, int j) {
     add_triangle_force(m, f, n, i, j);
     if (!m.pressure) return;
@@ -146,6 +178,27 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
     inverted += any;
   });
   return inverted;
+}
+
+/// Adds the energies of the springs of nodes of row j.
+template <class T>
+void add_spring_energy(const SpecialRows<T>& rows, const Unknowns<const T>& d, T step,
+                       EnergySums& sums, int j) {
+  const SpecialCells<T>& cells = rows.cells();
+  auto add = [&](const HeldNode<T>& node, T dx, T dy) {
+    const T x = node.off_x + step * dx, y = node.off_y + step * dy;
+    sums.constraint +=
+        0.5 * double(node.stiffness) * (double(x) * double(x) + double(y) * double(y));
+  };
+  for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k)
+    if (const HeldNode<T>& node = cells.held[std::size_t(k)]; !node.known())
+      add(node, d.x ? d.x.at(node.place, j) : T(0), d.x ? d.y.at(node.place, j) : T(0));
+  if (!rows.soft()) return;
+  for (int n = rows.soft()->begin(j); n < rows.soft()->begin(j + 1); ++n) {
+    const int c = rows.soft()->row(n).node;
+    add(cells.crossing[std::size_t(c)], d.x ? d.curve[2 * c] : T(0),
+        d.x ? d.curve[2 * c + 1] : T(0));
+  }
 }
 
 template <class T>
@@ -160,6 +213,9 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
       if (d.x && vertex < kFirstCrossing) {
         u.x += step * d.x.at(i + (vertex & 1), j + (vertex >> 1));
         u.y += step * d.y.at(i + (vertex & 1), j + (vertex >> 1));
+      } else if (d.curve && vertex >= kFirstCrossing) {
+        u.x += step * d.curve[2 * (vertex - kFirstCrossing)];
+        u.y += step * d.curve[2 * (vertex - kFirstCrossing) + 1];
       }
       return u;
     };
@@ -186,6 +242,7 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
     });
     sums.inverted_cells += inverted;
   }
+  add_spring_energy(*m.special, d, step, sums, j);
 }
 
 #define DRUMHEAD_INSTANTIATE(T)                                                                  \

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "soft_sweeps.h"
 #include "special_state.h"
 
 namespace drumhead::kernels {
@@ -41,6 +42,14 @@ void halve(std::vector<int>& columns, std::vector<int>& begin, int j) {
   std::for_each(row, columns.end(), [](int& i) { i /= 2; });
 }
 
+/// Stiffness of the spring of lattice node (i, j), which is not known.
+template <class T>
+T spring(const SpecialCells<T>& cells, int i, int j) {
+  for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k)
+    if (cells.held[std::size_t(k)].place == i) return cells.held[std::size_t(k)].stiffness;
+  return T(0);
+}
+
 /// visit(vertex index, its corner, part) for the vertices of cell `n`'s parts that are corners.
 template <class T, class F>
 void for_corner_vertices(const SpecialCells<T>& cells, int n, F&& visit) {
@@ -61,6 +70,7 @@ SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& mem
   add_stiffness(membrane);
   list_visits();
   list_couplings();
+  soft_ = SoftRows<T>(*this, membrane);
 }
 
 template <class T>
@@ -70,7 +80,7 @@ void SpecialRows<T>::list_near_nodes(int columns, int rows) {
   };
   corner_.assign(4 * std::size_t(cells_->size()), -1);
   near_begin_.assign(std::size_t(rows) + 1, 0);
-  held_begin_ = loose_begin_ = near_begin_;
+  known_begin_ = loose_begin_ = near_begin_;
   near_half_begin_.assign(2 * std::size_t(rows) + 1, 0);
   std::vector<Corner> corners;
   for (int j = 1; j + 1 < rows; ++j) {
@@ -80,34 +90,38 @@ void SpecialRows<T>::list_near_nodes(int columns, int rows) {
            ++n)
         for (const int east : {0, 1})
           corners.push_back({cells_->column[std::size_t(n)] + east, n, 2 * (j - row) + east});
-    for (int k = cells_->known_begin[std::size_t(j)]; k < cells_->known_begin[std::size_t(j) + 1];
+    for (int k = cells_->held_begin[std::size_t(j)]; k < cells_->held_begin[std::size_t(j) + 1];
          ++k)
-      corners.push_back({cells_->known[std::size_t(k)].column, -1, 0});
+      if (const HeldNode<T>& node = cells_->held[std::size_t(k)]; node.known())
+        corners.push_back({node.place, -1, 0});
+      else
+        corners.push_back({node.place, cells_->size(), 0});
     std::ranges::sort(corners, {}, [](const Corner& c) { return std::pair(c.column, c.cell); });
     for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
       const int column = corners[first].column;
       int regular = 15;
       for (end = first; end < corners.size() && corners[end].column == column; ++end)
-        if (corners[end].cell >= 0) regular &= ~(1 << corner_towards_node(corners[end].corner));
+        if (corners[end].cell >= 0 && corners[end].cell < cells_->size())
+          regular &= ~(1 << corner_towards_node(corners[end].corner));
       if (column == 0 || column + 1 == columns) continue;
       near_half_.push_back(column);
       if (corners[first].cell < 0) {
-        held_.push_back(column);
+        known_.push_back(column);
         if (regular != 0) loose_.push_back(column);
         continue;
       }
-      for (std::size_t c = first; c < end; ++c)
+      for (std::size_t c = first; c < end && corners[c].cell < cells_->size(); ++c)
         corner_[4 * std::size_t(corners[c].cell) + std::size_t(corners[c].corner)] =
             int(near_.size());
       near_.push_back({.column = column, .regular = regular});
     }
     halve(near_half_, near_half_begin_, j);
     near_begin_[std::size_t(j) + 1] = int(near_.size());
-    held_begin_[std::size_t(j) + 1] = int(held_.size());
+    known_begin_[std::size_t(j) + 1] = int(known_.size());
     loose_begin_[std::size_t(j) + 1] = int(loose_.size());
   }
   near_begin_[std::size_t(rows)] = int(near_.size());
-  held_begin_[std::size_t(rows)] = int(held_.size());
+  known_begin_[std::size_t(rows)] = int(known_.size());
   loose_begin_[std::size_t(rows)] = int(loose_.size());
   for (const int last : {2 * rows - 1, 2 * rows})
     near_half_begin_[std::size_t(last)] = int(near_half_.size());
@@ -186,6 +200,7 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
         row.k[stencil_place(own, own ^ 1)] -= T(0.5) * mu;
         row.k[stencil_place(own, own ^ 2)] -= T(0.5) * mu;
       }
+      row.k[kOwn] += spring(*cells_, row.column, j);
       row.inverse = T(1) / row.k[kOwn];
     }
 }
@@ -287,6 +302,7 @@ void SpecialRows<T>::set_steps(const Membrane<T>& m) {
       T s = (row.compliance + row.jumps) + floor;
       for (int c = 0; c < 4; ++c)
         s += (row.bx[c] * row.bx[c] + row.by[c] * row.by[c]) * visit.inverse[c];
+      if (soft()) s += curve_weight(*soft(), p);
       row.inverse = T(1) / s;
     });
 }
@@ -295,6 +311,7 @@ template <class T>
 void SpecialRows<T>::linearise(const Membrane<T>& m) {
   if (!cells_) return;
   linearise_regular(m);
+  soft_.linearise(*this, m);
   if (!m.pressure) return;
   for_special(*cells_, [&](int n, int, int j) {
     for_parts(*cells_, n, [&](int p) { linearise_part(m, n, p, j); });
@@ -306,12 +323,12 @@ void SpecialRows<T>::linearise(const Membrane<T>& m) {
 template <class T>
 std::size_t SpecialRows<T>::bytes() const {
   std::size_t indices = slot_.size() + corner_.size();
-  for (const auto* list : {&near_begin_, &held_, &held_begin_, &loose_, &loose_begin_, &near_half_,
-                           &near_half_begin_, &visit_begin_})
+  for (const auto* list : {&near_begin_, &known_, &known_begin_, &loose_, &loose_begin_,
+                           &near_half_, &near_half_begin_, &visit_begin_})
     indices += list->size();
   return indices * sizeof(int) + near_.size() * sizeof(NearRow<T>) +
          visit_.size() * sizeof(CellVisit<T>) + part_.size() * sizeof(PartRow<T>) +
-         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>);
+         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>) + soft_.bytes();
 }
 
 template class SpecialRows<float>;

@@ -19,7 +19,7 @@ Vector2<T> at_vertex(const SpecialCells<T>& cells, const Plane<const T>& x, cons
                      int i, int j, int vertex) {
   if (vertex >= kFirstCrossing) {
     const std::size_t n = std::size_t(vertex - kFirstCrossing);
-    return {cells.crossing_ux[n], cells.crossing_uy[n]};
+    return {cells.crossing[n].ux(), cells.crossing[n].uy()};
   }
   return {x.at(i + (vertex & 1), j + (vertex >> 1)), y.at(i + (vertex & 1), j + (vertex >> 1))};
 }

@@ -4,6 +4,7 @@
 // Plain loops, compiled once for every instruction set.
 #include <drumhead/kernels/special.h>
 
+#include "soft_sweeps.h"
 #include "special_state.h"
 
 namespace drumhead::kernels {
@@ -79,14 +80,16 @@ template <class T>
   const Four<T> k(row.k), l(row.k + 4);
   Four<T> hx = k * x.sides + l * x.rest, hy = k * y.sides + l * y.rest;
   const T own = row.k[kStencilPlaces - 1];
-  if (!d.p) return {hx.sum() + own * x.centre, hy.sum() + own * y.centre};
+  Vector2<T> product{own * x.centre, own * y.centre};
+  if (rows.soft()) add_curve_to_near(*rows.soft(), n, d.curve, product);
+  if (!d.p) return {hx.sum() + product.x, hy.sum() + product.y};
   const Four<T> g(row.g), h(row.g + 4);
   const T* const west = d.p.half(j, 1 - parity) + (half - 1 + parity);
   const T* const east = d.p.half(j, parity) + half;
   const Four<T> p(west[-d.p.stride], east[-d.p.stride], west[0], east[0]);
   hx = (hx + (g * y.sides + h * y.rest)) + Four<T>(row.bx) * p;
   hy = (hy - (g * x.sides + h * x.rest)) + Four<T>(row.by) * p;
-  Vector2<T> product{hx.sum() + own * x.centre, hy.sum() + own * y.centre};
+  product = {hx.sum() + product.x, hy.sum() + product.y};
   const int end = rows.near(n + 1).coupling_begin;
   for (int c = row.coupling_begin; c < end; ++c) {
     const PartCoupling<T>& coupling = rows.coupling(c);
@@ -146,7 +149,7 @@ void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
     out_x.half[parity][k] = value.x;
     out_y.half[parity][k] = value.y;
   }
-  for (const int i : rows.held(j)) out_x.half[i & 1][i >> 1] = out_y.half[i & 1][i >> 1] = T(0);
+  for (const int i : rows.known(j)) out_x.half[i & 1][i >> 1] = out_y.half[i & 1][i >> 1] = T(0);
 }
 
 /// visit(border) for the borders of regular cells of row j with parts.
@@ -177,8 +180,9 @@ template <class T>
                                            const Four<T>& x, const Four<T>& y, int p, int i,
                                            int j) {
   const PartRow<T>& row = rows.part(p);
-  const T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
-                    (row.compliance + row.jumps) * d.listed[p];
+  T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
+              (row.compliance + row.jumps) * d.listed[p];
+  if (rows.soft()) product += curve_of_part(*rows.soft(), p, d.curve);
   return row.jumps == T(0) ? product : product + neighbour_jumps(rows, d, p, i, j);
 }
 
@@ -239,6 +243,7 @@ void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, cons
       const Four<T> move = inverse * Four<T>(t);
       x = x + Four<T>(row.bx) * move;
       y = y + Four<T>(row.by) * move;
+      if (rows.soft()) move_curve_of_part(*rows.soft(), p, t, d.curve);
     }
     at_x.store(x);
     at_y.store(y);
@@ -334,7 +339,8 @@ void finish_prolongation(const SpecialRows<T>& rows, const SpecialTransfer<T>& t
       fine.y.at(node.fine, j) += node.weight[c] * coarse.y.at(I, J);
     }
   }
-  for (const int i : rows.held(j)) fine.x.at(i, j) = fine.y.at(i, j) = T(0);
+  prolong_curve_row(transfer, coarse, fine, j);
+  for (const int i : rows.known(j)) fine.x.at(i, j) = fine.y.at(i, j) = T(0);
   if (!fine.p) return;
   const SpecialCells<T>& cells = rows.cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
@@ -351,7 +357,7 @@ void finish_prolongation(const SpecialRows<T>& rows, const SpecialTransfer<T>& t
 /// has no equation.
 template <class T>
 void clear_without_equation(const SpecialRows<T>& coarse_rows, const Unknowns<T>& coarse, int j) {
-  for (const int i : coarse_rows.held(j)) coarse.x.at(i, j) = coarse.y.at(i, j) = T(0);
+  for (const int i : coarse_rows.known(j)) coarse.x.at(i, j) = coarse.y.at(i, j) = T(0);
   if (!coarse.p) return;
   const SpecialCells<T>& cells = coarse_rows.cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)

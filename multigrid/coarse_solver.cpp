@@ -9,8 +9,8 @@
 namespace drumhead::multigrid {
 namespace {
 
-/// Visits every unknown of a level in a fixed order: interior nodes' x and y, pressures of cells
-/// and of the parts of special cells, curve forces.
+/// Visits every unknown of a level in a fixed order: x and y of interior and curve nodes, pressures
+/// of cells and of the parts of special cells, curve forces.
 template <class T, class F>
 void for_unknowns(const kernels::Unknowns<T>& fields, T* q, std::size_t cuts, std::size_t parts,
                   bool pressure, F&& f) {
@@ -19,6 +19,7 @@ void for_unknowns(const kernels::Unknowns<T>& fields, T* q, std::size_t cuts, st
       f(fields.x.at(i, j));
       f(fields.y.at(i, j));
     }
+  for (int k = 0; k < fields.curve_count; ++k) f(fields.curve[k]);
   if (pressure)
     for (int j = 0; j < fields.p.rows; ++j)
       for (int i = 0; i < fields.p.columns; ++i) f(fields.p.at(i, j));

@@ -142,22 +142,19 @@ void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>
 template <class T>
 void set_targets(const grid::ConformingCells& from, T spacing, kernels::SpecialCells<T>& to) {
   const double h = double(spacing);
-  to.known.clear();
-  to.known_begin.assign(1, 0);
-  for (int j = 0; j <= from.ny; ++j) {
-    for (int n = from.node_begin[std::size_t(j)]; n < from.node_begin[std::size_t(j) + 1]; ++n) {
-      const grid::HeldNode& node = from.node[std::size_t(n)];
-      to.known.push_back(
-          {from.node_column[std::size_t(n)], T(node.wanted.x * h), T(node.wanted.y * h)});
-    }
-    to.known_begin.push_back(int(to.known.size()));
-  }
-  to.crossing_ux.clear();
-  to.crossing_uy.clear();
-  for (const grid::HeldNode& node : from.curve_node) {
-    to.crossing_ux.push_back(T(node.wanted.x * h));
-    to.crossing_uy.push_back(T(node.wanted.y * h));
-  }
+  auto set = [h](const grid::HeldNode& node, int place, kernels::HeldNode<T>& out) {
+    out.place = place;
+    out.wanted_x = T(node.wanted.x * h);
+    out.wanted_y = T(node.wanted.y * h);
+    out.stiffness = T(node.stiffness);
+  };
+  to.held.resize(from.node.size());
+  to.crossing.resize(from.curve_node.size());
+  to.held_begin = from.node_begin;
+  for (std::size_t n = 0; n < from.node.size(); ++n)
+    set(from.node[n], from.node_column[n], to.held[n]);
+  for (std::size_t n = 0; n < from.curve_node.size(); ++n)
+    set(from.curve_node[n], from.curve_cell[n][1], to.crossing[n]);
 }
 
 template <class T>
@@ -186,6 +183,12 @@ void ConformingLevel<T>::retarget(const grid::ConformingCells& other, T spacing)
 }
 
 template <class T>
+std::size_t ConformingLevel<T>::curve_unknowns() const {
+  auto soft = [](const kernels::HeldNode<T>& node) { return !node.known(); };
+  return std::ranges::any_of(cells.crossing, soft) ? 2 * cells.crossing.size() : 0;
+}
+
+template <class T>
 std::size_t ConformingLevel<T>::bytes() const {
   return rows.bytes() + cells.triangle.size() * sizeof(kernels::Triangle<T>) +
          cells.vertex.size() * sizeof(kernels::PartVertex<T>) +
@@ -195,16 +198,32 @@ std::size_t ConformingLevel<T>::bytes() const {
 }
 
 template <class T>
-void set_known(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
-               const kernels::Plane<T>& uy) {
+void set_held(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
+              const kernels::Plane<T>& uy) {
   const kernels::SpecialCells<T>& cells = level.cells;
   for (int j = 0; j < ux.rows; ++j)
-    for (int k = cells.known_begin[std::size_t(j)]; k < cells.known_begin[std::size_t(j) + 1];
-         ++k) {
-      const kernels::KnownNode<T>& node = cells.known[std::size_t(k)];
-      ux.at(node.column, j) = node.ux;
-      uy.at(node.column, j) = node.uy;
+    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
+      const kernels::HeldNode<T>& node = cells.held[std::size_t(k)];
+      ux.at(node.place, j) = node.ux();
+      uy.at(node.place, j) = node.uy();
     }
+}
+
+template <class T>
+void move_held(ConformingLevel<T>& level, const kernels::Unknowns<const T>& d, T step,
+               const kernels::Plane<T>& ux, const kernels::Plane<T>& uy) {
+  auto move = [step](kernels::HeldNode<T>& node, T dx, T dy) {
+    node.off_x += step * dx;
+    node.off_y += step * dy;
+  };
+  kernels::SpecialCells<T>& cells = level.cells;
+  for (int j = 0; j < ux.rows; ++j)
+    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k)
+      if (kernels::HeldNode<T>& node = cells.held[std::size_t(k)]; !node.known())
+        move(node, d.x.at(node.place, j), d.y.at(node.place, j));
+  for (int c = 0; c < d.curve_count / 2; ++c)
+    move(cells.crossing[std::size_t(c)], d.curve[2 * c], d.curve[2 * c + 1]);
+  set_held(level, ux, uy);
 }
 
 template <class T>
@@ -219,10 +238,12 @@ void set_part_means(const ConformingLevel<T>& level, const kernels::Plane<T>& pr
   });
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                                \
-  template struct ConformingLevel<T>;                                          \
-  template void set_known(const ConformingLevel<T>&, const kernels::Plane<T>&, \
-                          const kernels::Plane<T>&);                           \
+#define DRUMHEAD_INSTANTIATE(T)                                                      \
+  template struct ConformingLevel<T>;                                                \
+  template void set_held(const ConformingLevel<T>&, const kernels::Plane<T>&,        \
+                         const kernels::Plane<T>&);                                  \
+  template void move_held(ConformingLevel<T>&, const kernels::Unknowns<const T>&, T, \
+                          const kernels::Plane<T>&, const kernels::Plane<T>&);       \
   template void set_part_means(const ConformingLevel<T>&, const kernels::Plane<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

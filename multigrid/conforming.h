@@ -4,7 +4,9 @@
 // kernels, the pressures of their parts, and how state and corrections pass to and from the next
 // coarser level. Every level's cells are built from the curves themselves. Nodes on hard curves are
 // known; corrections of nodes pass by index (snapped nodes move by a quarter cell at most), states
-// are evaluated at the fine node's rest position in the coarse triangles.
+// are evaluated at the fine node's rest position in the coarse triangles. So are corrections of
+// nodes on soft curves; of their states, what passes is how far they are off their targets, which
+// is smooth along the curve and small where that is stiff.
 #include <vector>
 
 #include <drumhead/grid/conforming.h>
@@ -29,7 +31,9 @@ struct ConformingLevel {
   ConformingLevel(const ConformingLevel&) = delete;
   ConformingLevel& operator=(const ConformingLevel&) = delete;
 
-  /// Takes the targets of other curves with the same sources.
+  /// Values that the curve nodes add to a correction: two each if any of them is on a soft curve.
+  std::size_t curve_unknowns() const;
+  /// Takes the targets of other curves with the same sources; soft nodes stay as far off.
   void retarget(const grid::ConformingCells& other, T spacing);
   std::size_t bytes() const;
 };
@@ -38,10 +42,22 @@ template <class T>
 kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
                                              const grid::ConformingCells& coarse);
 
-/// Known nodes take their targets.
+/// Lattice nodes that curves hold take their places.
 template <class T>
-void set_known(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
-               const kernels::Plane<T>& uy);
+void set_held(const ConformingLevel<T>& level, const kernels::Plane<T>& ux,
+              const kernels::Plane<T>& uy);
+
+/// Held nodes of soft curves move by step·d; the planes, which have done so, take their places.
+template <class T>
+void move_held(ConformingLevel<T>& level, const kernels::Unknowns<const T>& d, T step,
+               const kernels::Plane<T>& ux, const kernels::Plane<T>& uy);
+
+/// Nodes of soft curves become as far off their targets as those of another level of the same
+/// curves, `from` (planes: its lattice nodes), on which a cell of `to` is `scale` cells wide. A
+/// node that has none near takes the other level's displacement.
+template <class T>
+void transfer_soft(const ConformingLevel<T>& from, const kernels::Plane<const T>& from_x,
+                   const kernels::Plane<const T>& from_y, double scale, ConformingLevel<T>& to);
 
 /// The plane at special cells takes the mean of their parts.
 template <class T>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "conforming_visits.h"
@@ -32,18 +33,55 @@ class Sets {
   std::vector<int> parent_;
 };
 
-bool is_known(const grid::ConformingCells& cells, int i, int j) {
-  if (i == 0 || j == 0 || i == cells.nx || j == cells.ny) return true;
-  const int n = cells.find_node(i, j);
-  return n >= 0 && std::isinf(cells.node[std::size_t(n)].stiffness);
-}
-
 /// Whether a side (south, east, north, west) of cell (i, j) lies between two known nodes.
 bool is_wall(const grid::ConformingCells& cells, int i, int j, int side) {
   constexpr std::array<std::array<int, 4>, 4> kEnds{
       {{0, 0, 1, 0}, {1, 0, 1, 1}, {0, 1, 1, 1}, {0, 0, 0, 1}}};
   const auto& [ax, ay, bx, by] = kEnds[std::size_t(side)];
   return is_known(cells, i + ax, j + ay) && is_known(cells, i + bx, j + by);
+}
+
+/// Pairs of parts with a common side that lies between two held nodes, not both of them known: a
+/// soft curve is no wall.
+std::vector<std::array<int, 2>> across_soft_curves(const grid::ConformingCells& cells) {
+  struct Side {
+    std::int64_t a, b;  // numbers of the nodes
+    int part;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  const std::int64_t nodes = std::int64_t(cells.nx + 1) * (cells.ny + 1);
+  for_special(cells, [&](int c, int i, int j) {
+    struct End {
+      std::int64_t number;
+      bool held, known;
+    };
+    auto end_at = [&](int code) -> End {
+      if (code >= kernels::kFirstCrossing) {
+        const std::size_t n = std::size_t(code - kernels::kFirstCrossing);
+        return {nodes + std::int64_t(n), true, std::isinf(cells.curve_node[n].stiffness)};
+      }
+      const int x = i + (code & 1), y = j + (code >> 1);
+      return {std::int64_t(y) * (cells.nx + 1) + x,
+              cells.cell_corner[std::size_t(c)][std::size_t(code)] >= 0, is_known(cells, x, y)};
+    };
+    for_parts(cells, c, [&](int p) {
+      const int first = cells.part_node_begin[std::size_t(p)],
+                last = cells.part_node_begin[std::size_t(p) + 1];
+      for (int n = first; n < last; ++n) {
+        const End a = end_at(cells.part_node[std::size_t(n)]),
+                  b = end_at(cells.part_node[std::size_t(n + 1 < last ? n + 1 : first)]);
+        if (!(a.known && b.known) && (a.held || a.known) && (b.held || b.known))
+          sides.push_back({std::min(a.number, b.number), std::max(a.number, b.number), p});
+      }
+    });
+  });
+  std::ranges::sort(sides);
+  std::vector<std::array<int, 2>> pairs;
+  for (std::size_t n = 0; n + 1 < sides.size(); ++n)
+    if (sides[n].a == sides[n + 1].a && sides[n].b == sides[n + 1].b)
+      pairs.push_back({sides[n].part, sides[n + 1].part});
+  return pairs;
 }
 
 }  // namespace
@@ -97,6 +135,7 @@ Regions::Regions(const grid::ConformingCells& geometry, const kernels::SpecialCe
          k < cells.neighbour_begin[std::size_t(p) + 1]; ++k)
       if (const int other = cells.neighbour[std::size_t(k)].part; other >= 0)
         sets.merge(runs + p, runs + other);
+  for (const auto& [a, b] : across_soft_curves(geometry)) sets.merge(runs + a, runs + b);
   for (int j = 0; j < geometry.ny; ++j) {
     int run = run_begin_[std::size_t(j)];
     for (int b = cells.border_begin[std::size_t(j)]; b < cells.border_begin[std::size_t(j) + 1];

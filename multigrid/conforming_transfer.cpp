@@ -97,12 +97,30 @@ std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
   return nodes;
 }
 
+/// Weights of soft coarse curve nodes in a fine lattice node.
+template <class T>
+void list_curve_nodes(const FineNode& node, const grid::ConformingCells& coarse,
+                      kernels::SpecialTransfer<T>& transfer) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int curve = node.place.code[a] - kernels::kFirstCrossing;
+    if (curve >= 0 && !std::isinf(coarse.curve_node[std::size_t(curve)].stiffness))
+      transfer.of_node.push_back({node.i, curve, T(node.place.weight[a])});
+  }
+}
+
 template <class T>
 void list_nodes(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
                 kernels::SpecialTransfer<T>& transfer) {
+  struct Row {
+    int j;
+  };
   std::vector<FineNode> listed;
+  std::vector<Row> of_node;
   for (const FineNode& node : nodes_in_special_cells(fine, coarse)) {
-    if (fine.find_node(node.i, node.j) >= 0) continue;
+    const int held = fine.find_node(node.i, node.j);
+    if (held >= 0 && std::isinf(fine.node[std::size_t(held)].stiffness)) continue;
+    list_curve_nodes(node, coarse, transfer);
+    of_node.resize(transfer.of_node.size(), {node.j});
     const double x = 0.5 * node.i - node.I, y = 0.5 * node.j - node.J;
     std::array<double, 4> beyond{-(1 - x) * (1 - y), -x * (1 - y), -(1 - x) * y, -x * y};
     for (std::size_t a = 0; a < 3; ++a)
@@ -120,6 +138,68 @@ void list_nodes(const grid::ConformingCells& fine, const grid::ConformingCells& 
     listed.push_back(node);
   }
   transfer.node_begin = row_begins(listed, fine.ny + 1);
+  if (!of_node.empty()) transfer.of_node_begin = row_begins(of_node, fine.ny + 1);
+}
+
+/// Where a point of the finer level, in coarse cells, lies: of the cells around it the special one
+/// that it is deepest in; cell −1: none is special.
+struct CoarsePlace {
+  int cell = -1, I = 0, J = 0;
+  InTriangle in;
+};
+CoarsePlace find_place(const grid::ConformingCells& cells, grid::Point at) {
+  constexpr double kReach = 0.3;  // beyond what moved corners leave out of a cell
+  auto index = [](double x, int count) { return std::clamp(int(std::floor(x)), 0, count - 1); };
+  CoarsePlace place{-1, index(at.x, cells.nx), index(at.y, cells.ny), {}};
+  for (int J = index(at.y - kReach, cells.ny); J <= index(at.y + kReach, cells.ny); ++J)
+    for (int I = index(at.x - kReach, cells.nx); I <= index(at.x + kReach, cells.nx); ++I) {
+      const int c = cells.find_cell(I, J);
+      if (c < 0) continue;
+      const InTriangle in = find_triangle(cells, c, J, at);
+      if (in.least > place.in.least) place = {c, I, J, in};
+    }
+  return place;
+}
+
+std::array<double, 4> bilinear(double x, double y) {
+  return {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+}
+
+/// Weights of coarse nodes in the fine nodes of soft curves.
+template <class T>
+void list_curves(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
+                 kernels::SpecialTransfer<T>& transfer) {
+  struct Row {
+    int j;
+    typename kernels::SpecialTransfer<T>::OfCurve entry;
+  };
+  std::vector<Row> rows;
+  for (std::size_t n = 0; n < fine.curve_node.size(); ++n) {
+    if (std::isinf(fine.curve_node[n].stiffness)) continue;
+    const grid::Point at = 0.5 * fine.curve_node[n].rest;
+    const CoarsePlace place = find_place(coarse, at);
+    const int row = fine.curve_cell[n][1];
+    auto add_corner = [&](int code, double weight) {
+      const int i = place.I + (code & 1), j = place.J + (code >> 1);
+      if (weight != 0.0 && !is_known(coarse, i, j))
+        rows.push_back({row, {int(n), i, j, T(weight)}});
+    };
+    if (place.cell < 0) {
+      const std::array<double, 4> weight = bilinear(at.x - place.I, at.y - place.J);
+      for (int c = 0; c < 4; ++c) add_corner(c, weight[std::size_t(c)]);
+      continue;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int code = place.in.code[a], curve = code - kernels::kFirstCrossing;
+      if (curve < 0)
+        add_corner(code, place.in.weight[a]);
+      else if (!std::isinf(coarse.curve_node[std::size_t(curve)].stiffness))
+        rows.push_back({row, {int(n), curve, -1, T(place.in.weight[a])}});
+    }
+  }
+  std::ranges::stable_sort(rows, {}, &Row::j);
+  for (const Row& entry : rows) transfer.of_curve.push_back(entry.entry);
+  if (!rows.empty()) transfer.of_curve_begin = row_begins(rows, fine.ny + 1);
 }
 
 }  // namespace
@@ -130,6 +210,7 @@ kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
   kernels::SpecialTransfer<T> transfer;
   list_pairs(fine, coarse, transfer);
   list_nodes(fine, coarse, transfer);
+  list_curves(fine, coarse, transfer);
   return transfer;
 }
 
@@ -175,24 +256,71 @@ void prolong_parts(const ConformingLevel<T>& coarse, const kernels::Plane<const 
     }
 }
 
+/// Of a vertex of special cell (i, j).
+template <class T>
+grid::Point displacement(const ConformingLevel<T>& level, const kernels::Plane<const T>& x,
+                         const kernels::Plane<const T>& y, int i, int j, int code) {
+  if (code < kernels::kFirstCrossing)
+    return {double(x.at(i + (code & 1), j + (code >> 1))),
+            double(y.at(i + (code & 1), j + (code >> 1)))};
+  const kernels::HeldNode<T>& node =
+      level.cells.crossing[std::size_t(code - kernels::kFirstCrossing)];
+  return {double(node.ux()), double(node.uy())};
+}
+
+/// How far a node that wants `wanted` is off at a point of another level.
+template <class T>
+grid::Point off_target(const ConformingLevel<T>& from, const kernels::Plane<const T>& x,
+                       const kernels::Plane<const T>& y, grid::Point at, grid::Point wanted) {
+  const CoarsePlace place = find_place(from.geometry, at);
+  grid::Point u{0.0, 0.0}, off{0.0, 0.0};
+  double held = 0.0;
+  auto add = [&](double weight, int code) {
+    u = u + weight * displacement(from, x, y, place.I, place.J, code);
+    const int corner = code < kernels::kFirstCrossing && place.cell >= 0
+                           ? from.geometry.cell_corner[std::size_t(place.cell)][std::size_t(code)]
+                           : -1;
+    if (code < kernels::kFirstCrossing && corner < 0) return;
+    const kernels::HeldNode<T>& node =
+        corner >= 0 ? from.cells.held[std::size_t(corner)]
+                    : from.cells.crossing[std::size_t(code - kernels::kFirstCrossing)];
+    off = off + weight * grid::Point{double(node.off_x), double(node.off_y)};
+    held += weight;
+  };
+  const std::array<double, 4> weight = bilinear(at.x - place.I, at.y - place.J);
+  for (std::size_t a = 0; a < 3 && place.cell >= 0; ++a) add(place.in.weight[a], place.in.code[a]);
+  for (std::size_t c = 0; c < 4 && place.cell < 0; ++c) add(weight[c], int(c));
+  return held > 0.5 ? (1.0 / held) * off : u - wanted;
+}
+
+template <class T>
+void transfer_soft(const ConformingLevel<T>& from, const kernels::Plane<const T>& from_x,
+                   const kernels::Plane<const T>& from_y, double scale, ConformingLevel<T>& to) {
+  auto set = [&](const grid::HeldNode& node, kernels::HeldNode<T>& held) {
+    if (held.known()) return;
+    const grid::Point wanted{double(held.wanted_x), double(held.wanted_y)};
+    const grid::Point off = off_target(from, from_x, from_y, scale * node.rest, wanted);
+    held.off_x = T(off.x);
+    held.off_y = T(off.y);
+  };
+  for (std::size_t n = 0; n < to.cells.held.size(); ++n) set(to.geometry.node[n], to.cells.held[n]);
+  for (std::size_t n = 0; n < to.cells.crossing.size(); ++n)
+    set(to.geometry.curve_node[n], to.cells.crossing[n]);
+}
+
 template <class T>
 void prolong_special_nodes(const ConformingLevel<T>& coarse,
                            const kernels::Plane<const T>& coarse_x,
                            const kernels::Plane<const T>& coarse_y, const ConformingLevel<T>& fine,
                            const kernels::Plane<T>& x, const kernels::Plane<T>& y) {
   const grid::ConformingCells& cells = coarse.geometry;
-  auto value = [&](const kernels::Plane<const T>& plane, const std::vector<T>& crossing, int i,
-                   int j, int code) {
-    return code >= kernels::kFirstCrossing
-               ? double(crossing[std::size_t(code - kernels::kFirstCrossing)])
-               : double(plane.at(i + (code & 1), j + (code >> 1)));
-  };
   for (const FineNode& node : nodes_in_special_cells(fine.geometry, cells)) {
     double ux = 0.0, uy = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const int code = node.place.code[a];
-      ux += node.place.weight[a] * value(coarse_x, coarse.cells.crossing_ux, node.I, node.J, code);
-      uy += node.place.weight[a] * value(coarse_y, coarse.cells.crossing_uy, node.I, node.J, code);
+      const grid::Point u =
+          displacement(coarse, coarse_x, coarse_y, node.I, node.J, node.place.code[a]);
+      ux += node.place.weight[a] * u.x;
+      uy += node.place.weight[a] * u.y;
     }
     x.at(node.i, node.j) = T(ux);
     y.at(node.i, node.j) = T(uy);
@@ -206,6 +334,8 @@ void prolong_special_nodes(const ConformingLevel<T>& coarse,
                                ConformingLevel<T>&);                                             \
   template void prolong_parts(const ConformingLevel<T>&, const kernels::Plane<const T>&,         \
                               ConformingLevel<T>&, const kernels::Plane<T>&);                    \
+  template void transfer_soft(const ConformingLevel<T>&, const kernels::Plane<const T>&,         \
+                              const kernels::Plane<const T>&, double, ConformingLevel<T>&);      \
   template void prolong_special_nodes(const ConformingLevel<T>&, const kernels::Plane<const T>&, \
                                       const kernels::Plane<const T>&, const ConformingLevel<T>&, \
                                       const kernels::Plane<T>&, const kernels::Plane<T>&);

@@ -2,10 +2,18 @@
 #pragma once
 // Visits of the special cells of conforming cells, of their parts and of the triangles of a part.
 #include <array>
+#include <cmath>
 
 #include <drumhead/grid/conforming.h>
 
 namespace drumhead::multigrid {
+
+/// Whether lattice node (i, j) is no unknown: on the outer boundary, or held by a hard curve.
+inline bool is_known(const grid::ConformingCells& cells, int i, int j) {
+  if (i == 0 || j == 0 || i == cells.nx || j == cells.ny) return true;
+  const int n = cells.find_node(i, j);
+  return n >= 0 && std::isinf(cells.node[std::size_t(n)].stiffness);
+}
 
 /// visit(special cell, i, j)
 template <class F>

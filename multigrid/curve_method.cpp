@@ -31,10 +31,6 @@ std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& 
   if (kernels::isotropic(model))
     return "curve method conforming: must be averaged for model " +
            std::string(kernels::name(model)) + "; conforming curves need crpm or harmonic";
-  for (const grid::CurvePair& curve : problem.curves)
-    if (!std::isinf(curve.weight))
-      return "curve '" + curve.name + "': weight = " + std::to_string(curve.weight) +
-             ": must be inf with conforming curves";
   if (options.exact) return "exact rows belong to averaged curves, not to conforming ones";
   if (options.solver != Solver::gcr)
     return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";
@@ -48,7 +44,8 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;
   }
-  if (!why_not.empty()) return CurveMethod::averaged;
+  const auto soft = [](const grid::CurvePair& curve) { return !std::isinf(curve.weight); };
+  if (!why_not.empty() || std::ranges::any_of(problem.curves, soft)) return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

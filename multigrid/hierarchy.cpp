@@ -172,7 +172,9 @@ void Hierarchy<T>::restrict_state(int top) {
     kernels::inject_nodes<T>(fine.uy.view(), coarse.uy.view());
     if (fine.pressure) kernels::mean_cells<T>(fine.pressure.view(), coarse.pressure.view());
     if (fine.conforming) {
-      set_known<T>(*coarse.conforming, coarse.ux.view(), coarse.uy.view());
+      const kernels::Plane<const T> x = fine.ux.view(), y = fine.uy.view();
+      transfer_soft<T>(*fine.conforming, x, y, 2.0, *coarse.conforming);
+      set_held<T>(*coarse.conforming, coarse.ux.view(), coarse.uy.view());
       if (fine.pressure)
         restrict_parts<T>(*fine.conforming, fine.pressure.view(), fine.spacing * fine.spacing,
                           *coarse.conforming);
@@ -193,7 +195,8 @@ void Hierarchy<T>::prolong_state(int l) {
     const kernels::Plane<const T> cx = coarse.ux.view(), cy = coarse.uy.view();
     prolong_special_nodes<T>(*coarse.conforming, cx, cy, *fine.conforming, fine.ux.view(),
                              fine.uy.view());
-    set_known<T>(*fine.conforming, fine.ux.view(), fine.uy.view());
+    transfer_soft<T>(*coarse.conforming, cx, cy, 0.5, *fine.conforming);
+    set_held<T>(*fine.conforming, fine.ux.view(), fine.uy.view());
     if (fine.pressure)
       prolong_parts<T>(*coarse.conforming, coarse.pressure.view(), *fine.conforming,
                        fine.pressure.view());
@@ -247,7 +250,7 @@ void Hierarchy<T>::retarget(const std::vector<grid::CurvePair>& curves,
   for (int l = top; l < size(); ++l) {
     Level<T>& level = (*this)[l];
     level.conforming->retarget(cells[std::size_t(l)], level.spacing);
-    set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
+    set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
   }
 }
 

@@ -143,8 +143,10 @@ void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   conforming = std::make_unique<ConformingLevel<T>>(std::move(cells), spacing);
   conforming->rows = kernels::SpecialRows<T>(conforming->cells, harmonic());
   d.listed.assign(conforming->pressure.size(), T(0));
+  d.curve.assign(conforming->curve_unknowns(), T(0));
   f.listed = d.listed;
-  set_known<T>(*conforming, ux.view(), uy.view());
+  f.curve = d.curve;
+  set_held<T>(*conforming, ux.view(), uy.view());
   meter.add(conforming->bytes());
 }
 

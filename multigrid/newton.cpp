@@ -134,7 +134,7 @@ template <class T>
 double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
   const auto f = level_.f.view();
-  double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y);
+  double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y) + kernels::dot_curve<T>(f, f);
   if (pressure)
     sum += (kernels::dot<T>(f.p, f.p) + kernels::dot_listed<T>(f, f)) /
            double(level_.spacing * level_.spacing);
@@ -151,7 +151,8 @@ double Newton<T>::line_search(double longest) {
   const bool lagrangian = level_.solid.law.relief > T(0);
   auto merit = [&](double step) {
     const kernels::EnergySums sums = kernels::energy<T>(membrane, level_.d.view(), T(step));
-    return sums.elastic + sums.volume_merit + (lagrangian ? curve_work(step) : curve_merit(step));
+    return sums.elastic + sums.volume_merit + sums.constraint +
+           (lagrangian ? curve_work(step) : curve_merit(step));
   };
   const double before = merit(0.0);
   // Cell energies are rounded, and so is the gap of every row.
@@ -192,7 +193,7 @@ double Newton<T>::take_step(double norm_before, double longest) {
 template <class T>
 double Newton<T>::drop_momentum() {
   const kernels::Unknowns<T> f = level_.f.view();
-  const kernels::Unknowns<T> nodes{f.x, f.y, {}};
+  const kernels::Unknowns<T> nodes{f.x, f.y, {}, nullptr, 0, f.curve, f.curve_count};
   kernels::combine<T>(T(0), nodes, T(0), nodes);
   double sum = (kernels::dot<T>(f.p, f.p) + kernels::dot_listed<T>(f, f)) /
                double(level_.spacing * level_.spacing);
@@ -220,6 +221,8 @@ void Newton<T>::update(double step, bool pressure) {
     kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
   for (std::size_t k = 0; pressure && k < level_.d.listed.size(); ++k)
     level_.conforming->pressure[k] += T(step) * level_.d.listed[k];
+  if (level_.conforming)
+    move_held<T>(*level_.conforming, d, T(step), level_.ux.view(), level_.uy.view());
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
 }
 
@@ -336,7 +339,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
     const double rms = std::sqrt(squares / double(level_.nodes()));
     if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p) +
-                       kernels::dot_listed<T>(d, d)))
+                       kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d)))
       return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)

@@ -44,6 +44,7 @@ Vector<T> NewtonSystem<T>::make_vector() const {
       grid::UnknownFields<T>(level().nx, level().ny, pressure_ && level().pressure, meter_),
       std::vector<T>(level().q.size(), T(0))};
   if (pressure_) vector.fields.listed.assign(level().d.listed.size(), T(0));
+  vector.fields.curve.assign(level().d.curve.size(), T(0));
   return vector;
 }
 
@@ -87,6 +88,7 @@ template <class T>
 double NewtonSystem<T>::dot(const Vector<T>& a, const Vector<T>& b, double volume_weight) const {
   const auto av = a.fields.view(), bv = b.fields.view();
   double sum = kernels::dot<T>(av.x, bv.x) + kernels::dot<T>(av.y, bv.y) +
+               kernels::dot_curve<T>(av, bv) +
                volume_weight * (kernels::dot<T>(av.p, bv.p) + kernels::dot_listed<T>(av, bv));
   for (std::size_t k = 0; k < a.q.size(); ++k) sum += double(a.q[k]) * double(b.q[k]);
   return sum;

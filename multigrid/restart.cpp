@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "conforming_visits.h"
+#include "split_cells.h"
 #include "volume_gap.h"
 
 namespace drumhead::multigrid {
@@ -93,11 +94,34 @@ double pressure_at(const Solution& start, int i, int j, grid::Point at_px) {
   return start.split.pressure[std::size_t(nearest)];
 }
 
-/// Held nodes at their targets and pressures of the parts.
+/// Nodes of soft curves where the earlier solution has their rest positions, but closer to their
+/// targets the stiffer their springs are beside the membrane, as one Gauss–Seidel step would have
+/// it.
+template <class T>
+void set_soft(const Solution& start, ConformingLevel<T>& level) {
+  constexpr double kMembrane = 4.0;  // K_ii of a lattice node
+  const grid::Lattice& lattice = start.lattice;
+  const kernels::LatticeMapView map = map_of(start);
+  auto set = [&](const grid::HeldNode& node, kernels::HeldNode<T>& held) {
+    if (held.known()) return;
+    const grid::Point rest = lattice.origin_px + lattice.cell_px * node.rest;
+    const kernels::Position at = kernels::forward_position(map, {rest.x, rest.y});
+    const double share = kMembrane / (kMembrane + node.stiffness);
+    held.off_x = T(share * ((at.x - rest.x) / lattice.cell_px - double(held.wanted_x)));
+    held.off_y = T(share * ((at.y - rest.y) / lattice.cell_px - double(held.wanted_y)));
+  };
+  for (std::size_t n = 0; n < level.cells.held.size(); ++n)
+    set(level.geometry.node[n], level.cells.held[n]);
+  for (std::size_t n = 0; n < level.cells.crossing.size(); ++n)
+    set(level.geometry.curve_node[n], level.cells.crossing[n]);
+}
+
+/// Held nodes in their places and pressures of the parts.
 template <class T>
 void set_conforming_state(Level<T>& level, const Solution& start) {
   ConformingLevel<T>& conforming = *level.conforming;
-  set_known<T>(conforming, level.ux.view(), level.uy.view());
+  set_soft(start, conforming);
+  set_held<T>(conforming, level.ux.view(), level.uy.view());
   if (start.pressure.empty()) return;
   const grid::Lattice& lattice = start.lattice;
   for_special(conforming.geometry, [&](int c, int i, int j) {
@@ -117,7 +141,9 @@ void clear_state(Level<T>& level) {
   std::ranges::fill(level.q, T(0));
   if (!level.conforming) return;
   std::ranges::fill(level.conforming->pressure, T(0));
-  set_known<T>(*level.conforming, level.ux.view(), level.uy.view());
+  for (auto* nodes : {&level.conforming->cells.held, &level.conforming->cells.crossing})
+    for (kernels::HeldNode<T>& node : *nodes) node.off_x = node.off_y = T(0);
+  set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
 }
 
 }  // namespace

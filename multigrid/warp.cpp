@@ -91,8 +91,9 @@ template <class T>
 void export_split_cells(const Hierarchy<T>& hierarchy, Solution& solution) {
   const ConformingLevel<T>& level = *hierarchy[0].conforming;
   std::vector<grid::Point> displacement;
-  for (const grid::HeldNode& node : level.geometry.curve_node)
-    displacement.push_back(solution.lattice.cell_px * node.wanted);
+  for (const kernels::HeldNode<T>& node : level.cells.crossing)
+    displacement.push_back(solution.lattice.cell_px *
+                           grid::Point{double(node.ux()), double(node.uy())});
   set_split_cells(level.geometry, displacement, solution);
   if (solution.pressure.empty()) return;
   for (std::size_t p = 0; p < level.pressure.size(); ++p)
@@ -108,7 +109,9 @@ EnergyReport energies(const Hierarchy<T>& hierarchy, const grid::CutCells& cuts)
   for (auto& shift : membrane.law.shift) shift = {};
   const kernels::EnergySums sums = kernels::energy<T>(membrane, {}, T(0));
   const double area = double(level.nx) * double(level.ny);
-  EnergyReport energy{.elastic = sums.elastic / area, .volume = sums.volume / area};
+  EnergyReport energy{.elastic = sums.elastic / area,
+                      .volume = sums.volume / area,
+                      .constraint = sums.constraint / area};
   // |q|²/(2 d len): the energy of a soft row's spring; the gap that the q-jump opens is not
   // counted.
   for (std::size_t k = 0; k < cuts.compliance.size(); ++k) {

@@ -17,7 +17,8 @@ Point deformed(Scene& scene, int cell, int i, int j, int code) {
   const grid::ConformingCells& cells = scene.cells();
   if (code >= 4) {
     const grid::HeldNode& node = cells.curve_node[std::size_t(code - 4)];
-    return node.rest + node.wanted;
+    const kernels::HeldNode<double>& state = scene.special_cells().crossing[std::size_t(code - 4)];
+    return node.rest + node.wanted + Point{state.off_x, state.off_y};
   }
   const int x = i + (code & 1), y = j + (code >> 1);
   const Point rest = cell >= 0 ? cells.rest(cell, j, code) : Point{double(x), double(y)};
@@ -25,7 +26,7 @@ Point deformed(Scene& scene, int cell, int i, int j, int code) {
 }
 
 struct Energy {
-  double elastic = 0.0, volume = 0.0, lagrangian = 0.0;
+  double elastic = 0.0, volume = 0.0, constraint = 0.0, lagrangian = 0.0;
 };
 
 void add_volume(Energy& energy, double change, double area, double p) {
@@ -67,6 +68,27 @@ void add_special(Scene& scene, int cell, int i, int j, Energy& energy) {
   }
 }
 
+/// Of the springs of soft curves.
+double constraint(Scene& scene) {
+  const grid::ConformingCells& cells = scene.cells();
+  double sum = 0.0;
+  auto add = [&](const grid::HeldNode& node, Point u) {
+    if (!std::isinf(node.stiffness))
+      sum += 0.5 * node.stiffness * grid::dot(u - node.wanted, u - node.wanted);
+  };
+  for (int j = 0; j <= kNy; ++j)
+    for (int n = cells.node_begin[std::size_t(j)]; n < cells.node_begin[std::size_t(j) + 1]; ++n) {
+      const int i = cells.node_column[std::size_t(n)];
+      add(cells.node[std::size_t(n)],
+          {scene.level.ux.view().at(i, j), scene.level.uy.view().at(i, j)});
+    }
+  for (std::size_t n = 0; n < cells.curve_node.size(); ++n) {
+    const kernels::HeldNode<double>& state = scene.special_cells().crossing[n];
+    add(cells.curve_node[n], {state.ux(), state.uy()});
+  }
+  return sum;
+}
+
 Energy energy_of(Scene& scene) {
   Energy energy;
   for (int j = 0; j < kNy; ++j)
@@ -75,20 +97,21 @@ Energy energy_of(Scene& scene) {
         add_special(scene, cell, i, j, energy);
       else
         add_regular(scene, i, j, energy);
-  energy.lagrangian += energy.elastic;
+  energy.constraint = constraint(scene);
+  energy.lagrangian += energy.elastic + energy.constraint;
   return energy;
 }
 
 /// The state moved by step·d.
 Energy energy_at(Scene& scene, const Eigen::VectorXd& d, double step) {
-  const Eigen::VectorXd before = scene.gather(scene.state());
-  scene.scatter(before + step * d, scene.state());
+  const Eigen::VectorXd before = scene.state();
+  scene.set_state(before + step * d);
   const Energy energy = energy_of(scene);
-  scene.scatter(before, scene.state());
+  scene.set_state(before);
   return energy;
 }
 
-TEST(ConformingKernels, TheSceneHasAllKindsOfCells) {
+TEST(ConformingScene, HasAllKindsOfCells) {
   Scene scene;
   const auto& rows = scene.level.conforming->rows;
   EXPECT_GT(scene.cells().cells(), 15);
@@ -98,9 +121,12 @@ TEST(ConformingKernels, TheSceneHasAllKindsOfCells) {
   EXPECT_LT(rows.near_begin(kNy + 1), (kNx - 1) * (kNy - 1));
 }
 
+class ConformingKernels : public testing::TestWithParam<Weights> {};
+INSTANTIATE_TEST_SUITE_P(HardAndSoft, ConformingKernels, testing::ValuesIn(kWeights));
+
 // The energy is a polynomial of degree two in each of x and P: central differences are exact.
-TEST(ConformingKernels, ForceIsMinusTheDerivativeOfTheEnergy) {
-  Scene scene;
+TEST_P(ConformingKernels, ForceIsMinusTheDerivativeOfTheEnergy) {
+  Scene scene(GetParam());
   const Eigen::VectorXd force = scene.force();
   for (Eigen::Index k = 0; k < force.size(); ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(force.size(), k);
@@ -110,36 +136,35 @@ TEST(ConformingKernels, ForceIsMinusTheDerivativeOfTheEnergy) {
   }
 }
 
-TEST(ConformingKernels, ProductIsTheDerivativeOfTheForce) {
-  Scene scene;
+TEST_P(ConformingKernels, ProductIsTheDerivativeOfTheForce) {
+  Scene scene(GetParam());
   const Eigen::MatrixXd matrix = scene.assembled();
   EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 1e-12);
   const Eigen::VectorXd d = Eigen::VectorXd::Random(matrix.cols());
-  const Eigen::VectorXd before = scene.gather(scene.state());
-  scene.scatter(before + d, scene.state());
+  const Eigen::VectorXd before = scene.state();
+  scene.set_state(before + d);
   const Eigen::VectorXd ahead = scene.force();
-  scene.scatter(before - d, scene.state());
+  scene.set_state(before - d);
   const Eigen::VectorXd behind = scene.force();
   EXPECT_LT((matrix * d + 0.5 * (ahead - behind)).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-TEST(ConformingKernels, TheHessianSeesPressuresClamped) {
-  Scene scene;
+TEST_P(ConformingKernels, TheHessianSeesPressuresClamped) {
+  Scene scene(GetParam());
   scene.level.clamp_centre = 0.2;
   scene.level.clamp_width = 0.5;
   const Eigen::MatrixXd clamped = scene.assembled();
-  const kernels::Unknowns<double> state = scene.state();
   auto clamp = [](double& p) { p = std::clamp(p - 0.2, -0.5, 0.5); };
   for (int j = 0; j < kNy; ++j)
-    for (int i = 0; i < kNx; ++i) clamp(state.p.at(i, j));
-  for (int k = 0; k < state.listed_count; ++k) clamp(state.listed[k]);
+    for (int i = 0; i < kNx; ++i) clamp(scene.level.pressure.view().at(i, j));
+  for (double& p : scene.level.conforming->pressure) clamp(p);
   scene.level.clamp_centre = 0.0;
   scene.level.clamp_width = 1e30;
   EXPECT_LT((scene.assembled() - clamped).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(ConformingKernels, EnergySumsAreThoseOfTheGeometry) {
-  Scene scene;
+TEST_P(ConformingKernels, EnergySumsAreThoseOfTheGeometry) {
+  Scene scene(GetParam());
   const Eigen::VectorXd d = 0.1 * Eigen::VectorXd::Random(scene.force().size());
   scene.scatter(d, scene.level.d.view());
   for (const double step : {0.0, 0.5}) {
@@ -148,6 +173,7 @@ TEST(ConformingKernels, EnergySumsAreThoseOfTheGeometry) {
     const Energy expected = energy_at(scene, d, step);
     EXPECT_NEAR(sums.elastic, expected.elastic, 1e-10);
     EXPECT_NEAR(sums.volume, expected.volume, 1e-10);
+    EXPECT_NEAR(sums.constraint, expected.constraint, 1e-10);
     EXPECT_NEAR(sums.volume_merit, expected.volume, 1e-10);  // kappa ≤ 100 mu
   }
 }
@@ -166,7 +192,9 @@ Eigen::MatrixXd jump_term(Scene& scene, double sigma) {
     auto number = [&](int code) {
       return code < 4 ? (j + (code >> 1)) * (kNx + 1) + i + (code & 1) : 1000 + code;
     };
-    auto held = [&](int code) { return code >= 4 || scene.known(i + (code & 1), j + (code >> 1)); };
+    auto held = [&](int code) {
+      return code >= 4 || cells.find_node(i + (code & 1), j + (code >> 1)) >= 0;
+    };
     for (std::size_t n = 0; n < codes.size(); ++n) {
       const int a = codes[n], b = codes[(n + 1) % codes.size()];
       pieces[std::minmax({number(a), number(b)})].push_back(
@@ -209,13 +237,14 @@ Eigen::MatrixXd jump_term(Scene& scene, double sigma) {
   return matrix;
 }
 
-TEST(ConformingKernels, TheJumpTermSeesPartsAndRegularCells) {
-  Scene scene;
+TEST_P(ConformingKernels, TheJumpTermSeesPartsAndRegularCells) {
+  Scene scene(GetParam());
   const Eigen::MatrixXd without = scene.assembled();
   scene.level.pressure_jump = 0.4;
   Eigen::MatrixXd difference = scene.assembled() - without;
   const Eigen::MatrixXd expected = jump_term(scene, 0.4);
-  difference.bottomRightCorner(expected.rows(), expected.cols()) -= expected;
+  const Eigen::Index first = difference.rows() - scene.curve_unknowns() - expected.rows();
+  difference.block(first, first, expected.rows(), expected.cols()) -= expected;
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GT(expected.bottomRows(scene.cells().parts()).cwiseAbs().maxCoeff(), 0.01);
 }

@@ -63,27 +63,30 @@ class Field {
 };
 
 /// x, y per node and, if asked for, p per cell of an nx × ny lattice; `listed`: one per part of its
-/// special cells.
+/// special cells; `curve`: two per curve node where a curve is soft.
 template <class T>
 struct UnknownFields {
   Field<T> x, y, p;
-  std::vector<T> listed;
+  std::vector<T> listed, curve;
   UnknownFields() = default;
   UnknownFields(int nx, int ny, bool pressure, MemoryMeter& meter)
       : x(nx + 1, ny + 1, meter), y(nx + 1, ny + 1, meter) {
     if (pressure) p = Field<T>(nx, ny, meter);
   }
   kernels::Unknowns<T> view() {
-    return {x.view(), y.view(), p.view(), listed.data(), int(listed.size())};
+    return {x.view(),           y.view(),     p.view(),         listed.data(),
+            int(listed.size()), curve.data(), int(curve.size())};
   }
   kernels::Unknowns<const T> view() const {
-    return {x.view(), y.view(), p.view(), listed.data(), int(listed.size())};
+    return {x.view(),           y.view(),     p.view(),         listed.data(),
+            int(listed.size()), curve.data(), int(curve.size())};
   }
   void clear() {
     x.clear();
     y.clear();
     p.clear();
     std::ranges::fill(listed, T(0));
+    std::ranges::fill(curve, T(0));
   }
 };
 

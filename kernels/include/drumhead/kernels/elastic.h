@@ -41,6 +41,7 @@ struct EnergySums {
   /// Σ A [P⁺ c + km/2 c²], c = J* − 1 − P⁺/kappa, km = min(kappa, 100 mu), P⁺ = P + dP; where kappa
   /// ≤ 100 mu simply A kappa/2 (J* − 1)²: the volume part of the line search's merit function.
   double volume_merit = 0.0;
+  double constraint = 0.0;      ///< Σ stiffness/2 |u − wanted|² over the nodes of soft curves
   double inverted_cells = 0.0;  ///< number of cells with J* < 0
   /// Isotropic membranes only: the least J at the points where their energy is taken.
   double least_J = 1e30;

@@ -15,6 +15,9 @@ double dot(const Unknowns<const T>& a, const Unknowns<const T>& b);
 /// The pressures of parts of special cells, where pressures are present.
 template <class T>
 double dot_listed(const Unknowns<const T>& a, const Unknowns<const T>& b);
+/// The curve nodes of soft curves.
+template <class T>
+double dot_curve(const Unknowns<const T>& a, const Unknowns<const T>& b);
 
 /// max |a|; NaN if any value is NaN.
 template <class T>
@@ -23,7 +26,7 @@ double largest(const Plane<const T>& a);
 /// y = a x + b y; with b = 0, y is not read.
 template <class T>
 void combine(T a, const Plane<const T>& x, T b, const Plane<T>& y);
-/// x, y, p and the list.
+/// x, y, p, the list and the curve nodes.
 template <class T>
 void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y);
 

@@ -52,11 +52,15 @@ class RowScratch {
   void forget();
   /// One value per part of special cells.
   T* parts(int count);
-  std::size_t bytes() const { return (storage_.size() + parts_.size()) * sizeof(T); }
+  /// Room for what lattice nodes have for the curve nodes of the coarser level.
+  T* curves(int count);
+  std::size_t bytes() const {
+    return (storage_.size() + parts_.size() + curves_.size()) * sizeof(T);
+  }
 
  private:
   std::ptrdiff_t odd_;
-  std::vector<T> storage_, parts_;
+  std::vector<T> storage_, parts_, curves_;
   std::vector<Rows> rows_;
 };
 

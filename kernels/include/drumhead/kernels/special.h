@@ -5,8 +5,10 @@
 // vertices cut into triangles, and instead of Eq. 6 and 5 of Setaluri et al. 2014 it has
 //   Σ_triangles mu A/2 |F|² + Σ_parts [P (A J − A) − A P²/(2 kappa)]
 // with F constant on a triangle and A J the area of the deformed polygon: one pressure per side of
-// the curve (one per cell is first order again, one per triangle locks). Nodes on a hard curve are
-// *known*: their correction is 0. Storage is proportional to the length of the curves.
+// the curve (one per cell is first order again, one per triangle locks). Nodes that a curve holds
+// have the energy stiffness/2 |u − wanted|² besides; those of a hard curve are *known*: their
+// stiffness is infinite, their correction 0. Curve nodes of soft curves are unknowns beside the
+// lattice (soft_nodes.h). Storage is proportional to the length of the curves.
 //
 // Every node of a special cell, and every known node, is *near*. The vectorised kernels pass over
 // special cells and near nodes as if they were regular, and what they write there is overwritten (a
@@ -14,9 +16,11 @@
 // operator. A plane's value at a special cell is therefore not part of any system; corrections keep
 // 0 there.
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include <drumhead/kernels/soft_nodes.h>
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -52,11 +56,18 @@ struct PartBorder {
   int neighbour = 0;  ///< the part's entry of SpecialCells::neighbour
 };
 
-/// A lattice node or crossing node whose place the curve prescribes.
+/// A node that a curve holds. Its displacement, in finest cells, is kept as that which is wanted
+/// (target − rest position) and the rest, lest stiff springs see little but rounding.
 template <class T>
-struct KnownNode {
-  int column = 0;
-  T ux = T(0), uy = T(0);  ///< target − rest position, in finest cells
+struct HeldNode {
+  int place = 0;  ///< column of a lattice node, row of a curve node
+  T wanted_x = T(0), wanted_y = T(0);
+  T stiffness = T(0);  ///< infinite: the node is known
+  T off_x = T(0), off_y = T(0);
+
+  bool known() const { return stiffness > std::numeric_limits<T>::max(); }
+  T ux() const { return wanted_x + off_x; }
+  T uy() const { return wanted_y + off_y; }
 };
 
 /// The special cells of one level, sorted by row, then column.
@@ -74,9 +85,9 @@ struct SpecialCells {
   std::vector<PartNeighbour> neighbour;
   std::vector<int> border_begin;  ///< ny + 1, by the regular cell's row; sorted by column
   std::vector<PartBorder> border;
-  std::vector<int> known_begin;  ///< ny + 2: known lattice nodes of row j, sorted by column
-  std::vector<KnownNode<T>> known;
-  std::vector<T> crossing_ux, crossing_uy;  ///< displacement of the crossing nodes
+  std::vector<int> held_begin;  ///< ny + 2: lattice nodes of row j that curves hold, by column
+  std::vector<HeldNode<T>> held;
+  std::vector<HeldNode<T>> crossing;
 
   int size() const { return int(column.size()); }
   int parts() const { return int(area.size()); }
@@ -136,7 +147,7 @@ class SpecialRows {
   /// Near nodes of node row j that are unknown, by column: [near_begin(j), near_begin(j + 1)).
   int near_begin(int j) const { return near_begin_[std::size_t(j)]; }
   /// Known nodes of node row j but those on the fixed boundary.
-  Columns held(int j) const { return columns(held_, held_begin_, j); }
+  Columns known(int j) const { return columns(known_, known_begin_, j); }
   /// Those of them that are a corner of a regular cell.
   Columns loose(int j) const { return columns(loose_, loose_begin_, j); }
   /// Half the column, rounded down, of the near nodes of node row j in columns of one parity.
@@ -156,6 +167,8 @@ class SpecialRows {
   /// Strength of the jump at entry k of SpecialCells::neighbour.
   T jump(int k) const { return jump_[std::size_t(k)]; }
   const PartCoupling<T>& coupling(int k) const { return coupling_[std::size_t(k)]; }
+  /// Curve nodes of soft curves; null: none.
+  const SoftRows<T>* soft() const { return soft_.size() > 0 ? &soft_ : nullptr; }
   /// Near node at corner c of special cell n; −1: known or on the fixed boundary.
   int unknown_corner(int n, int c) const { return corner_[4 * std::size_t(n) + std::size_t(c)]; }
   std::size_t bytes() const;
@@ -174,7 +187,7 @@ class SpecialRows {
   void set_steps(const Membrane<T>& membrane);
 
   const SpecialCells<T>* cells_ = nullptr;
-  std::vector<int> near_begin_, corner_, held_, held_begin_, loose_, loose_begin_, near_half_,
+  std::vector<int> near_begin_, corner_, known_, known_begin_, loose_, loose_begin_, near_half_,
       near_half_begin_, visit_begin_;
   std::vector<int> slot_;         // of every part vertex: index into coupling_, −1: none
   std::vector<NearRow<T>> near_;  // one more than there are, which ends the couplings of the last
@@ -183,6 +196,7 @@ class SpecialRows {
   std::vector<T> jump_;
   std::vector<PartCoupling<T>> coupling_;
   bool has_jumps_ = false;
+  SoftRows<T> soft_;
 };
 
 /// How a level with special cells hangs together with the next coarser one, beyond the transfers of
@@ -205,6 +219,22 @@ struct SpecialTransfer {
   std::vector<Pair> pair;
   std::vector<int> node_begin;  ///< fine ny + 2
   std::vector<Node> node;
+
+  // Where curves are soft: weights of coarse curve nodes in fine lattice nodes, and of coarse nodes
+  // in fine curve nodes.
+  struct OfNode {
+    int fine = 0;    ///< column
+    int coarse = 0;  ///< curve node
+    T weight = T(0);
+  };
+  struct OfCurve {
+    int fine = 0;             ///< curve node
+    int column = 0, row = 0;  ///< coarse lattice node; row < 0: curve node `column`
+    T weight = T(0);
+  };
+  std::vector<int> of_node_begin, of_curve_begin;  ///< fine ny + 2, or none
+  std::vector<OfNode> of_node;
+  std::vector<OfCurve> of_curve;
 };
 
 }  // namespace drumhead::kernels

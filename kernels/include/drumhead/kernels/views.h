@@ -63,8 +63,10 @@ struct Unknowns {
   Plane<T> x, y, p;
   T* listed = nullptr;  ///< one per part of the special cells (see special.h)
   int listed_count = 0;
+  T* curve = nullptr;  ///< x and y of every curve node (see soft_nodes.h); null: no curve is soft
+  int curve_count = 0;
   operator Unknowns<const T>() const requires(!std::is_const_v<T>) {
-    return {x, y, p, listed, listed_count};
+    return {x, y, p, listed, listed_count, curve, curve_count};
   }
 };
 

@@ -54,7 +54,7 @@ enum class CurveMethod {
   /// averaged; averaged, too, where conforming cells do not converge.
   automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
-  conforming  ///< cells divided along the curves (grid/conforming.h): second order, hard curves
+  conforming  ///< cells divided along the curves (grid/conforming.h): second order, soft or hard
 };
 const char* name(CurveMethod method);
 /// Nothing for a name that is none of these.
