@@ -89,5 +89,8 @@ int main(int argc, char** argv) {
   for (const scenes::Scene& scene : {pinch, turn, shift})
     bench::run({scene, 128, 1e4F, 1.0F}, results);
   for (const scenes::Scene& scene : {turn, shift})
-    for (const float mu : {10.0F, 100.0F}) bench::run({scene, 128, 10.0F, 10.0F, mu}, results);
+    for (const float mu : {0.01F, 10.0F, 100.0F})
+      bench::run({scene, 128, 10.0F, 10.0F, mu}, results);
+  for (const scenes::Scene& scene : {turn, shift})
+    bench::run({scene, 256, 10.0F, 10.0F, 0.01F}, results);
 }

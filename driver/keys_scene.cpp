@@ -117,9 +117,10 @@ const std::array kKeys = {
         .set = set_margin},
     Key{.name = "model",
         .value = "M",
-        .bound = "one of: crpm, harmonic, arap, corotated, linear, neohookean, stvk",
+        .bound = "one of: crpm, harmonic, arap, fold-free, corotated, linear, neohookean, stvk",
         .help = "membrane: crpm; harmonic, which is crpm with kappa 0; arap (as rigid as possible, "
-                "kappa resists folds only); or an elastic body with mu and kappa as Lamé's moduli",
+                "kappa resists folds only); fold-free (crpm without folded cells); or an elastic "
+                "body with mu and kappa as Lamé's moduli",
         .fallback = "crpm",
         .set = set_model},
     Key{.name = "mu",
@@ -132,13 +133,13 @@ const std::array kKeys = {
         .value = "V",
         .bound = "a number, 0 or above, or inf",
         .help = "resistance to change of area, in units of mu; inf: incompressible (crpm; other "
-                "models: at most 1e6)",
+                "models: at most 1e6, fold-free 100)",
         .fallback = "1",
         .set = set_kappa},
     Key{.name = "eps",
         .value = "V",
         .bound = "a number from 0 to below 1",
-        .help = "arap: the share of its area below which a cell resists",
+        .help = "arap, fold-free: the share of its area below which a cell resists",
         .fallback = "0.2",
         .set = set_eps},
     Key{.name = "weight",

@@ -55,7 +55,7 @@ struct Options {
   grid::LatticeOptions lattice;
   kernels::Model model = kernels::Model::crpm;
   double mu = grid::Material{}.mu;
-  std::optional<double> eps;              ///< arap only
+  std::optional<double> eps;              ///< arap, fold-free
   double kappa = grid::Material{}.kappa;  ///< in units of mu
   MaskOptions mu_mask, kappa_mask;
   double weight = std::numeric_limits<double>::infinity();  ///< of every curve without its own

@@ -79,8 +79,9 @@ multigrid::WarpProblem problem_of(const Options& options, const Image& picture,
   problem.material.mu = options.mu;
   problem.material.kappa = options.model == kernels::Model::harmonic ? 0.0 : options.kappa;
   problem.material.model = options.model;
-  if (options.eps && options.model != kernels::Model::arap)
-    throw std::invalid_argument("eps: only the model arap has one");
+  if (options.eps && options.model != kernels::Model::arap &&
+      options.model != kernels::Model::fold_free)
+    throw std::invalid_argument("eps: only the models arap and fold-free have one");
   problem.material.eps = options.eps.value_or(problem.material.eps);
   apply_masks(options, picture.width(), picture.height(), problem.lattice, problem.material);
   grid::check(problem.material, problem.lattice);

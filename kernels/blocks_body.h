@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Rows of the relaxation of isotropic membranes: the 2×2 blocks of the Hessian's diagonal, and the
-// corner pressures of arap.
+// corner pressures.
 #include "isotropic_body.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
@@ -64,7 +64,7 @@ template <class T>
         const Split<B> f = cell.at(T(n & 1), T(n >> 1));
         const B J = B(T(0.25)) * ((f.a1 * f.a1 + f.a2 * f.a2) - (f.b1 * f.b1 + f.b2 * f.b2));
         const OneSidedSquare<T, B> square(J - cell.c.eps + cell.shift[n], cell.c.onset);
-        lane.store(cell.c.kappa * B(T(1) / m.law.relief) * square.slope, out[n] + k);
+        lane.store(cell.c.corner * B(T(1) / m.law.relief) * square.slope, out[n] + k);
       }
     });
   }

@@ -77,6 +77,8 @@ const IsotropicRows<T>& isotropic_rows(const Membrane<T>& m) {
   switch (m.law.model) {
     case Model::arap:
       return kernels.arap;
+    case Model::fold_free:
+      return kernels.fold_free;
     case Model::linear:
       return kernels.linear;
     case Model::neohookean:

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Rows of the kernels that all isotropic membranes share: a cell's energy is the sum of A/4 Ψ over
-// four points of the cell, 2×2 Gauss points or (arap's one-sided term) its corners. The columns of
+// four points of the cell, 2×2 Gauss points or its corners, or A Ψ at its centre. The columns of
 // F at the point (s, t) are x̂'s differences along the cell's edges,
 //   F e1 = (1−t) bottom + t top, F e2 = (1−s) left + s right.
 // A cell row adds to two node rows: cells of even rows are done first, then those of odd rows.
 #include "model_arap.h"
 #include "model_corotated.h"
+#include "model_fold_free.h"
 #include "model_linear.h"
 #include "model_neohookean.h"
 #include "model_stvk.h"
@@ -89,7 +90,7 @@ struct CellState {
 /// Reads the cells of columns 2k + parity in row j.
 template <class T>
 struct CellReader {
-  T inverse_h, mu_value, kappa_value, eps, relief, onset;
+  T inverse_h, mu_value, kappa_value, eps, corner, relief, onset;
   Corners<const T> ux, uy;
   const T *mu, *kappa;
   const T* shift[4];
@@ -99,6 +100,7 @@ struct CellReader {
         mu_value(m.mu.value),
         kappa_value(m.law.kappa.value),
         eps(m.law.eps),
+        corner(m.law.corner),
         relief(m.law.relief),
         onset(m.law.onset > T(kLeastOnset) ? m.law.onset : T(kLeastOnset)),
         ux(m.ux, j, parity),
@@ -132,21 +134,30 @@ struct CellReader {
     CellState<T, B> cell;
     cell.g = {one + h * u.bx, h * u.by,       one + h * u.tx, h * u.ty,
               h * u.lx,       one + h * u.ly, h * u.rx,       one + h * u.ry};
-    cell.c = {mu ? lane.load(mu + k) : B(mu_value), kappa ? lane.load(kappa + k) : B(kappa_value),
-              B(eps), zero, B(onset)};
-    // kappa c/(kappa + c), in a form that takes kappa = 0.
-    if (relief > T(0)) cell.c.kappa = cell.c.kappa / (cell.c.kappa * B(T(1) / relief) + one);
+    cell.c = {mu ? lane.load(mu + k) : B(mu_value),
+              kappa ? lane.load(kappa + k) : B(kappa_value),
+              B(eps),
+              zero,
+              zero,
+              B(onset)};
+    cell.c.corner = corner > T(0) ? B(corner) : cell.c.kappa;
+    // w c/(w + c), in a form that takes w = 0.
+    if (relief > T(0)) cell.c.corner = cell.c.corner / (cell.c.corner * B(T(1) / relief) + one);
     for (int n = 0; n < 4; ++n) cell.shift[n] = shift[n] ? lane.load(shift[n] + k) : zero;
     return cell;
   }
 };
 
-/// visit(Density, weight index n of t, m of s, s, t, state's parameters) at all points of a model.
+/// visit(Density, s, t, parameters) at all points of a model.
 template <class T, class Model, class B, class F>
 [[gnu::always_inline]] inline void for_points(const CellState<T, B>& cell, F&& visit) {
-  for (int n = 0; n < 2; ++n)
-    for (int m = 0; m < 2; ++m)
-      visit(Model{}, T(GaussPoints::at[m]), T(GaussPoints::at[n]), cell.c);
+  if constexpr (requires { typename Model::Centre; }) {
+    visit(typename Model::Centre{}, T(0.5), T(0.5), cell.c);
+  } else {
+    for (int n = 0; n < 2; ++n)
+      for (int m = 0; m < 2; ++m)
+        visit(Model{}, T(GaussPoints::at[m]), T(GaussPoints::at[n]), cell.c);
+  }
   if constexpr (requires { typename Model::Corner; }) {
     for (int n = 0; n < 2; ++n)
       for (int m = 0; m < 2; ++m) {
@@ -178,7 +189,16 @@ struct EdgeSums {
   }
 };
 
-/// The Hessian of one point's energy, its eigenvalues at least `floor`.
+/// The least eigenvalue of a density's Hessian that a clamp of this width leaves.
+template <class T, class Density, class B>
+B least_eigenvalue(const Parameters<B>& c, B width) {
+  if constexpr (requires { Density::template floor<T>(c, width); })
+    return Density::template floor<T>(c, width);
+  else
+    return (B(T(1)) - width) * c.mu;
+}
+
+/// The Hessian of one point's energy, its eigenvalues raised to the least one.
 template <class T, class B>
 struct Tangent {
   B a1, a2, b1, b2, aa, ab, bb, twist, flip;
@@ -186,7 +206,7 @@ struct Tangent {
   Tangent(Density, const Split<B>& f, const Parameters<B>& c, B width) {
     const Polar<T, Density, B> p(f);
     Moduli<B> m = Density::template at<T>(c, p.ra, p.rb);
-    raise_eigenvalues<T>(m, (B(T(1)) - width) * c.mu);
+    raise_eigenvalues<T>(m, least_eigenvalue<T, Density>(c, width));
     a1 = p.a1, a2 = p.a2, b1 = p.b1, b2 = p.b2;
     aa = m.aa, ab = m.ab, bb = m.bb, twist = m.twist, flip = m.flip;
   }

@@ -19,6 +19,7 @@ template <class T>
 constexpr IsotropicTable<T> make_isotropic_table() {
   return {
       .arap = isotropic_rows<Arap, T>(),
+      .fold_free = isotropic_rows<FoldFree, T>(),
       .corotated = isotropic_rows<Corotated, T>(),
       .linear = isotropic_rows<Linear, T>(),
       .neohookean = isotropic_rows<NeoHookean, T>(),

@@ -21,7 +21,7 @@ struct IsotropicRows {
 
 template <class T>
 struct IsotropicTable {
-  IsotropicRows<T> arap, corotated, linear, neohookean, stvk;
+  IsotropicRows<T> arap, fold_free, corotated, linear, neohookean, stvk;
   IsotropicRows<T> averaged;  ///< product and diagonal only
   void (*block_step)(const Plane<const T>* inverse_block, T omega, const Unknowns<const T>& f,
                      const Unknowns<const T>& product, const Unknowns<T>& d, int j);

@@ -35,10 +35,10 @@ struct OneSided {
   static Moduli<B> at(const Parameters<B>& c, B ra, B rb) {
     const B zero(T(0)), half(T(0.5));
     const OneSidedSquare<T, B> square(half * (ra * ra - rb * rb) - c.eps + c.shift, c.onset);
-    const B pressure = c.kappa * square.slope, kappa = c.kappa * square.curvature;
+    const B pressure = c.corner * square.slope, kappa = c.corner * square.curvature;
     Moduli<B> m;
     m.shape = zero;
-    m.volume = c.kappa * square.value;
+    m.volume = c.corner * square.value;
     m.a = pressure * ra;
     m.b = zero - pressure * rb;
     m.twist = pressure;

@@ -11,10 +11,10 @@ constexpr double kRootTwo = 1.41421356237309504880;
 // Lengths below this are taken as it in divisors; its square is a normal float.
 constexpr double kSmallest = 1e-18;
 
-/// mu, kappa (λ) and eps of a membrane, and the shift and onset of arap's corner.
+/// mu, kappa (λ) and eps of a membrane, and stiffness, shift and onset of its corners' term.
 template <class B>
 struct Parameters {
-  B mu, kappa, eps, shift, onset;
+  B mu, kappa, eps, corner, shift, onset;
 };
 
 template <class B>

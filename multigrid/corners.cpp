@@ -10,9 +10,13 @@
 namespace drumhead::multigrid {
 namespace {
 
-// Stiffness of corners in mu: the largest, and that to begin with on a level whose pressures come
-// from a coarser one. (At first the hierarchy makes it 10.) Each move takes it by a factor.
+// Stiffness of corners in mu: the largest that pressures need, and that to begin with on a level
+// whose pressures come from a coarser one. (At first the hierarchy makes it 10.) Each move takes it
+// by a factor.
 constexpr double kMostRelief = 300.0, kGrows = 5.5, kRestart = kMostRelief / kGrows;
+// And the largest where folds are left with that: fold-free's tips (S1, kappa 10, 200²) have 20
+// folded cells with 300, none with 3000.
+constexpr double kLastRelief = 1e4;
 // Onset of corners of stiffness 10, and what each move leaves of it.
 constexpr double kFirstOnset = 0.5, kNarrows = 0.43;
 // Onsets below this make no difference.
@@ -47,6 +51,8 @@ void Corners<T>::move() {
   else if (unfolded())
     kernels::update_corner_pressure<T>(
         level_.membrane(), {shift[0].view(), shift[1].view(), shift[2].view(), shift[3].view()});
+  else if (law.corner > T(0))
+    soften(std::min(kLastRelief, kGrows * double(law.relief)));
   law.onset = T(std::max(onset_, kNarrows * double(law.onset)));
 }
 
@@ -54,7 +60,8 @@ template <class T>
 bool Corners<T>::last() const {
   const kernels::Law<T>& law = level_.solid.law;
   return double(law.relief) >= kMostRelief &&
-         double(law.onset) <= std::max(1.001 * onset_, kNoOnset);
+         double(law.onset) <= std::max(1.001 * onset_, kNoOnset) &&
+         (law.corner == T(0) || double(law.relief) >= kLastRelief || unfolded());
 }
 
 template <class T>

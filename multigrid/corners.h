@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Eq. 8 with a large kappa (Setaluri et al. 2014) as a row of easy problems: corners soft and their
-// resistance gradual at first, then stiffer and sharper, each time the state has followed; from the
-// stiffest on a step of the method of multipliers each time, for an inequality only from states
-// without folds, in which pressures would run away. So Newton's method need not find out
-// corner by corner which of them resist, and no linear system sees stiff ones.
+// Eq. 8 with a large kappa (Setaluri et al. 2014), and fold-free's corners, as a row of easy
+// problems: corners soft and their resistance gradual at first, then stiffer and sharper, each time
+// the state has followed; from 300 mu on a step of the method of multipliers each time. For an
+// inequality those wait for a state without folds: in others pressures would run away; fold-free's
+// corners become still stiffer there. So Newton's method need not find out corner by corner which
+// of them resist, and few linear systems see stiff ones.
 #include "level.h"
 
 namespace drumhead::multigrid {
@@ -35,7 +36,10 @@ class Corners {
   static constexpr double kFollowed = 0.3;
 
   void soften(double relief);
-  bool inequality() const { return double(level_.solid.law.kappa.value) >= kAsInequality; }
+  bool inequality() const {
+    const kernels::Law<T>& law = level_.solid.law;
+    return double(law.corner > T(0) ? law.corner : law.kappa.value) >= kAsInequality;
+  }
   double least_J() const;
 
   Level<T>& level_;

@@ -23,6 +23,9 @@ constexpr double kMostCompliance = 1e6;
 // arap: stiffness of a corner at first; Newton raises it, and takes what kappa has above that from
 // corner pressures.
 constexpr double kRelief = 10.0;
+// fold-free: of a corner below eps, in the end. With 1e6 pressures take longer to settle (S2, kappa
+// 1, 200²: at corners that have not, the energy of what is left is 5 % of the whole).
+constexpr double kCornerStiffness = 1e4;
 // neohookean: the J below which ln J is a parabola at first; Newton lowers it.
 constexpr double kFirstFloor = 0.1;
 
@@ -97,12 +100,14 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
   set_compliance(material, std::numeric_limits<double>::infinity());
   if (kernels::isotropic(traits_.model))
     fill(finest.solid.kappa, material.kappa_cells, [](double kappa) { return kappa; });
+  const bool fold_free = traits_.model == kernels::Model::fold_free;
   for (Level<T>& level : levels_) {
     level.solid.law.kappa.value = T(material.kappa);
+    if (fold_free) level.solid.law.corner = T(kCornerStiffness);
     level.solid.law.eps =
         T(material.model == kernels::Model::neohookean ? kFirstFloor : material.eps);
   }
-  if (traits_.model == kernels::Model::arap) relieve(material, meter);
+  if (traits_.model == kernels::Model::arap || fold_free) relieve(material, meter);
   for (int l = 0; l + 1 < size(); ++l) {
     Level<T>&fine = levels_[std::size_t(l)], &coarse = levels_[std::size_t(l) + 1];
     auto average = [&](const grid::Field<T>& from, grid::Field<T>& to) {
@@ -146,7 +151,7 @@ template <class T>
 void Hierarchy<T>::relieve(const grid::Material& material, grid::MemoryMeter& meter) {
   const std::vector<float>& cells = material.kappa_cells;
   const double most = cells.empty() ? material.kappa : double(*std::ranges::max_element(cells));
-  if (most <= kRelief) return;
+  if (most <= kRelief && traits_.model == kernels::Model::arap) return;
   for (Level<T>& level : levels_) {
     level.solid.law.relief = T(kRelief);
     for (auto& shift : level.solid.shift) shift = grid::Field<T>(level.nx, level.ny, meter);

@@ -53,7 +53,7 @@ class Hierarchy {
 
  private:
   void set_material(const grid::Material& material, grid::MemoryMeter& meter);
-  /// arap with a large kappa: corner pressures on all levels.
+  /// arap with a large kappa, fold-free: corner pressures on all levels.
   void relieve(const grid::Material& material, grid::MemoryMeter& meter);
   void set_diagonal(Level<T>& level, grid::MemoryMeter& meter);
 

@@ -23,6 +23,8 @@ constexpr int kStartSteps = 60;
 constexpr double kStartError = 0.01, kAveragedStart = 0.03;
 // arap with a large kappa: the way out of folds is long, and its steps are cheap.
 constexpr int kFoldSteps = 200;
+// stvk, which collapses: S1 and S4 take up to 100 steps to the default error, 300 to .01 cells.
+constexpr int kCollapseSteps = 300;
 // Error there, in cells, where no tolerance was asked for: minima are many and flat.
 constexpr double kFoldTolerance = 0.03;
 // Onset of the corners' resistance at the end, in J, likewise, and on levels that only start the
@@ -45,6 +47,9 @@ constexpr double kContent = 0.6, kStartContent = 0.3, kHarmonic = 0.05;
 // (kappa 1e4, 128²).
 constexpr double kReduction = 0.3, kAccurate = 0.1;
 constexpr int kDirections = 6;
+// But where a mask of mu makes cells as soft as kappa/mu kSoft, the 20 that there are otherwise: mu
+// .01 in a disc, kappa 10, 256²: S2 and S4 stall with 6, S2 at 160² with 12, too.
+constexpr double kSoft = 300.0;
 // From this kappa/mu on contraction is at first better than it stays: S4, kappa 100, 100² ended
 // with .26 of the discretisation error, thought to be .08.
 constexpr double kStiff = 30.0, kStiffRate = 0.5;
@@ -122,7 +127,8 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start,
     linear.kind = CycleKind::v;
   if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.reduction = kReduction;
-    if (level.nodes() >= kSmallNodes) linear.directions = kDirections;
+    const bool soft = level.mu && hierarchy.traits().stiffness >= kSoft;
+    if (level.nodes() >= kSmallNodes && !soft) linear.directions = kDirections;
   }
   // Small lattices can afford directions, and the states on the way to the first solution need
   // them.
@@ -255,6 +261,7 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
     newton.linear.content = newton.linear.reduction = kAccurate;
     newton.expected_rates.clear();
   }
+  if (level.solid.law.model == kernels::Model::stvk) newton.most_steps = kCollapseSteps;
   if (level.solid.law.relief > T(0)) {
     newton.most_steps = kFoldSteps;
     newton.linear.content = newton.linear.reduction = kAccurate;

@@ -35,7 +35,7 @@ struct NewtonOptions {
   /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor
   /// is expected to do before it is taken.
   std::vector<double> expected_rates;
-  double onset = 0.0;  ///< arap: of the one-sided term at the end (corners.h)
+  double onset = 0.0;  ///< of corners' one-sided term at the end (corners.h)
   /// No step without such a model is expected to contract by more than this.
   double least_rate = 0.0;
   LinearOptions linear;

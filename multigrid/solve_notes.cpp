@@ -30,7 +30,8 @@ void note_gaps(const WarpProblem& problem, SolveReport& report) {
 
 void note_folds(const grid::Material& material, SolveReport& report) {
   const FoldReport& folds = report.folds;
-  const bool free = material.model == kernels::Model::arap && material.kappa >= kAsInequality;
+  const bool free = material.model == kernels::Model::fold_free ||
+                    (material.model == kernels::Model::arap && material.kappa >= kAsInequality);
   const bool collapses = material.model == kernels::Model::stvk;
   if (folds.folded_cells == 0 || (!free && !collapses)) return;
   report.notes.push_back(

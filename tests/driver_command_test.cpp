@@ -101,8 +101,11 @@ TEST_F(DriverCommand, RefusesMembranesOutsideTheirDomain) {
   expect_refused(
       {"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "arap", "--kappa", "inf"},
       {"kappa of model arap", "at most 1e6"});
+  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "fold-free",
+                  "--kappa", "101"},
+                 {"kappa of model fold-free = 101", "at most 100"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--eps", "0.1"},
-                 {"eps: only the model arap has one"});
+                 {"eps: only the models arap and fold-free have one"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "rubber"},
                  {"--model rubber: must be one of: crpm, harmonic, arap"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "stvk",

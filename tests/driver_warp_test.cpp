@@ -227,6 +227,30 @@ TEST_F(DriverWarp, MapsAndLatticeAreWrittenAndTheReportHasTheirRoundTrip) {
   EXPECT_LT(farthest, 0.02);
 }
 
+TEST_F(DriverWarp, FoldFreeLeavesNoFoldedCell) {
+  draw_shift(24);
+  const auto run = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all{
+        "warp",    "photo.png", "curves.svg", "--cells",        "48",      "--kappa", "10", "-o",
+        "out.png", "--report",  "r.json",     "--curve-method", "averaged"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const RunResult result = run_drumhead(scratch, all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(read_text(scratch / "r.json"));
+  };
+  EXPECT_GT(run({})["folds"]["folded_cells"], 0);
+  const Json free = run({"--model", "fold-free", "--eps", "0.1"});
+  EXPECT_EQ(free["model"], "fold-free");
+  EXPECT_EQ(free["folds"]["folded_cells"], 0);
+  scratch.write("scene.toml",
+                "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 48\nkappa = 10\n"
+                "model = \"fold-free\"\neps = 0.1\n");
+  const RunResult same =
+      run_drumhead(scratch, {"warp", "scene.toml", "-o", "s.png", "--report", "s.json"});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(Json::parse(read_text(scratch / "s.json"))["folds"], free["folds"]);
+}
+
 TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
   draw_shift(6);
   const auto run = [&](const std::string& flag, const std::string& value) {

@@ -14,7 +14,8 @@ namespace {
 using namespace fields;
 
 TEST(MembraneOracle, StressAndTangentAreDerivativesOfTheEnergy) {
-  for (const std::string model : {"arap", "one_sided", "corotated", "linear", "neohookean", "stvk"})
+  for (const std::string model :
+       {"arap", "one_sided", "harmonic", "volume", "corotated", "linear", "neohookean", "stvk"})
     for (const State& state : states()) {
       if (state.collapsed && model == "neohookean") continue;
       SCOPED_TRACE(model + ", " + state.name);

@@ -21,7 +21,8 @@ using kernels::Model;
 
 inline constexpr double kExact = 1e30;  // clamp of the exact Hessian
 inline constexpr double kEps = 0.2;
-inline constexpr double kFloor = 0.01;  // no J of a state in the domain of neohookean is below it
+inline constexpr double kCorner = 1.25;  // fold-free: stiffness of corners
+inline constexpr double kFloor = 0.01;   // no J of a state in the domain of neohookean is below it
 
 inline std::vector<Model> models() {
   std::vector<Model> all;
@@ -54,7 +55,8 @@ struct Sample {
     membrane.mu.cells = mu.view();
     membrane.law = {.model = model,
                     .kappa = {T(1), kappa.view()},
-                    .eps = T(model == Model::neohookean ? kFloor : kEps)};
+                    .eps = T(model == Model::neohookean ? kFloor : kEps),
+                    .corner = T(model == Model::fold_free ? kCorner : 0.0)};
     membrane.clamp_width = T(kExact);
   }
   /// x̂ = F X, and `noise` cells besides.
@@ -74,6 +76,7 @@ struct Sample {
                               ny,
                               double(membrane.spacing),
                               kEps,
+                              kCorner,
                               {},
                               {},
                               {},

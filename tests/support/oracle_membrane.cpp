@@ -77,6 +77,20 @@ const Law kLaws[] = {
        if (lack >= 0.0) return Matrix2::Zero();
        return p.kappa * (inner(cofactor(F), dF) * cofactor(F) + lack * cofactor(dF));
      }},
+    {"harmonic", [](const Matrix2& F, const Parameters& p) { return 0.5 * p.mu * F.squaredNorm(); },
+     [](const Matrix2& F, const Parameters& p) -> Matrix2 { return p.mu * F; },
+     [](const Matrix2&, const Matrix2& dF, const Parameters& p) -> Matrix2 { return p.mu * dF; }},
+    {"volume",
+     [](const Matrix2& F, const Parameters& p) {
+       return 0.5 * p.kappa * std::pow(F.determinant() - 1.0, 2);
+     },
+     [](const Matrix2& F, const Parameters& p) -> Matrix2 {
+       return p.kappa * (F.determinant() - 1.0) * cofactor(F);
+     },
+     [](const Matrix2& F, const Matrix2& dF, const Parameters& p) -> Matrix2 {
+       return p.kappa *
+              (inner(cofactor(F), dF) * cofactor(F) + (F.determinant() - 1.0) * cofactor(dF));
+     }},
     {"corotated",
      [](const Matrix2& F, const Parameters& p) {
        const Matrix2 R = Rotation(F).R;
@@ -141,10 +155,21 @@ const Law kLaws[] = {
 struct Point {
   std::string law;
   double s, t;
+  double weight = 0.25;     ///< of the cell's area
+  double least = 0.0;       ///< eigenvalue of the projected tangent, in mu
+  bool of_corners = false;  ///< kappa is MembraneLattice::corner
 };
 std::vector<Point> points(const std::string& model) {
   const double g = 0.5 / std::sqrt(3.0);
   std::vector<Point> all;
+  if (model == "fold-free") {
+    for (const double t : {0.0, 1.0})
+      for (const double s : {0.0, 1.0})
+        for (const char* law : {"harmonic", "one_sided"})
+          all.push_back({law, s, t, 0.25, 0.0, true});
+    all.push_back({"volume", 0.5, 0.5, 1.0, -1.0});  // Eq. 6 makes up for −mu
+    return all;
+  }
   for (const double t : {0.5 - g, 0.5 + g})
     for (const double s : {0.5 - g, 0.5 + g}) all.push_back({model, s, t});
   if (model == "arap")
@@ -153,9 +178,9 @@ std::vector<Point> points(const std::string& model) {
   return all;
 }
 
-Matrix4d without_negative_eigenvalues(const Matrix4d& tangent) {
+Matrix4d raised(const Matrix4d& tangent, double least) {
   const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(tangent);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(least).asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 
@@ -173,6 +198,15 @@ PointLaw law_at(const std::string& model, const Matrix2& F, double mu, double ka
     point.tangent.col(column) = Eigen::Map<const Vector4d>(change.data());
   }
   return point;
+}
+
+Matrix4d mean_projected_tangent(const std::string& model, const Matrix2& F, double mu, double kappa,
+                                double eps, double corner) {
+  Matrix4d sum = Matrix4d::Zero();
+  for (const Point& p : points(model))
+    sum += p.weight *
+           raised(law_at(p.law, F, mu, p.of_corners ? corner : kappa, eps).tangent, p.least * mu);
+  return sum;
 }
 
 MembraneSystem assemble(const MembraneLattice& lattice, bool projected) {
@@ -198,9 +232,11 @@ MembraneSystem assemble(const MembraneLattice& lattice, bool projected) {
           const int at = node[std::size_t(n)];
           F += Eigen::Vector2d(lattice.x[at], lattice.y[at]) * slope[std::size_t(n)].transpose();
         }
-        PointLaw law = law_at(point.law, F, lattice.mu[cell], lattice.kappa[cell], lattice.eps);
-        if (projected) law.tangent = without_negative_eigenvalues(law.tangent);
-        const double weight = 0.25 * h * h;
+        const double mu = lattice.mu[cell];
+        const double kappa = point.of_corners ? lattice.corner : lattice.kappa[cell];
+        PointLaw law = law_at(point.law, F, mu, kappa, lattice.eps);
+        if (projected) law.tangent = raised(law.tangent, point.least * mu);
+        const double weight = point.weight * h * h;
         system.energy += weight * law.energy;
         // Columns: the derivative of (F11, F21, F12, F22) by a node's x, then by its y.
         Eigen::Matrix<double, 4, 8> derivative = Eigen::Matrix<double, 4, 8>::Zero();
@@ -229,7 +265,7 @@ State newton(const OracleScene& scene, const std::string& model, double kappa, d
              const State& start, int steps) {
   OracleScene rows = scene;  // the curve rows alone
   rows.mu.assign(rows.mu.size(), 0.0);
-  MembraneLattice lattice{model, scene.n, scene.n, 1.0, eps, scene.mu, {}, {}, {}};
+  MembraneLattice lattice{model, scene.n, scene.n, 1.0, eps, 1e4, scene.mu, {}, {}, {}};
   lattice.kappa.assign(scene.mu.size(), kappa);
   State state = start;
   auto index = [&](Eigen::Index unknown) {  // in the order of the scene's unknowns; −1: fixed

@@ -11,13 +11,14 @@ namespace drumhead::grid {
 
 struct Material {
   double mu = 1.0;  ///< > 0; the unit of kappa
-  /// In units of mu, 0…infinity; 0: no pressures exist. Models other than crpm: 0…1e6.
+  /// In units of mu, 0…infinity; 0: no pressures exist. Models other than crpm: 0…1e6,
+  /// fold-free 0…100.
   double kappa = 1.0;
   /// Optional factors per cell, row after row, i fastest, empty or nx·ny: the cell's stiffness is
   /// mu·mu_cells[c] (> 0) and its compression resistance mu·kappa_cells[c] (≥ 0, replaces `kappa`).
   std::vector<float> mu_cells, kappa_cells;
   kernels::Model model = kernels::Model::crpm;
-  double eps = 0.2;  ///< arap: share of its area below which a cell's corner resists, 0…1
+  double eps = 0.2;  ///< arap, fold-free: share of its area below which a cell's corner resists
 };
 
 /// Throws std::invalid_argument naming the value, the cell and the bound.

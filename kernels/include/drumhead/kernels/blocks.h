@@ -20,8 +20,8 @@ void average_tangents(const Membrane<T>& membrane, const Plane<T>& coarse);
 template <class T>
 double largest_eigenvalue(const LevelSystem<T>& level, int steps);
 
-/// shift := min(0, J − eps + shift) kappa/(kappa + c) at every corner, c = law.relief: one step of
-/// the method of multipliers (arap, model_arap.h). shift are the planes that membrane.law views.
+/// shift := min(0, J − eps + shift) w/(w + c) at every corner, c = law.relief, w its stiffness: one
+/// step of the method of multipliers (model_arap.h). shift are the planes that membrane.law views.
 template <class T>
 void update_corner_pressure(const Membrane<T>& membrane, const Plane<T> (&shift)[4]);
 

@@ -20,10 +20,11 @@ struct ModelInfo {
 };
 
 /// Every membrane, in the order of the help.
-constexpr std::array<ModelInfo, 7> kModels{{
+constexpr std::array<ModelInfo, 8> kModels{{
     {Model::crpm, "crpm", "mu/2 |F|² + kappa/2 (J−1)²"},
     {Model::harmonic, "harmonic", "mu/2 |F|²"},
     {Model::arap, "arap", "mu/2 |F−R|² + kappa/2 min(0, J−eps)²"},
+    {Model::fold_free, "fold-free", "crpm's, and J >= eps at every corner"},
     {Model::corotated, "corotated", "mu |F−R|² + kappa/2 (tr RᵀF − 2)²"},
     {Model::linear, "linear", "mu |e|² + kappa/2 (tr e)², e the linear strain"},
     {Model::neohookean, "neohookean", "mu/2 (|F|²−2) − mu ln J + kappa/2 ln² J"},

@@ -81,23 +81,24 @@ template <class T>
 class SpecialRows;
 
 /// See model.h.
-enum class Model { crpm, harmonic, arap, corotated, linear, neohookean, stvk };
+enum class Model { crpm, harmonic, arap, fold_free, corotated, linear, neohookean, stvk };
 
 /// What the isotropic membranes have in place of pressures. kappa is the second modulus: of the
-/// one-sided term for arap, Lamé's λ for the others.
+/// one-sided term for arap, as in crpm for fold-free, Lamé's λ for the others.
 template <class T>
 struct Law {
   Model model = Model::crpm;
   Coefficient<T> kappa;
-  /// arap: the J below which the one-sided term acts. neohookean: the J below which ln J goes on as
-  /// a parabola.
+  /// arap, fold-free: the J below which the one-sided term of Eq. 8 acts. neohookean: the J below
+  /// which ln J goes on as a parabola.
   T eps = T(0.2);
-  /// arap: the corner pressures P ≤ 0 of earlier steps over `relief`, per corner 00, 10, 01, 11 of
-  /// a cell; null: none (isotropic.h).
+  /// fold-free: stiffness w of that term; 0: kappa.
+  T corner = T(0);
+  /// Of that term: the corner pressures P ≤ 0 of earlier steps over `relief`, per corner 00, 10,
+  /// 01, 11 of a cell; null: none (isotropic.h).
   Plane<const T> shift[4];
   T relief = T(0);
-  /// arap: the one-sided term begins gradually, from this far above eps to as far below (at least
-  /// 1e-6).
+  /// It begins gradually, from this far above eps to as far below (at least 1e-6).
   T onset = T(0);
 };
 
