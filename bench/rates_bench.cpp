@@ -76,11 +76,8 @@ void run(const scenes::Scene& scene, double kappa, double weight, int n, Results
                                        {"cycles", entry.report.cycles},
                                        {"converged", entry.report.residual <= kReduction}}));
   };
-  if (!std::isfinite(weight)) {  // conforming curves are hard
-    scenes::NewtonLevel<float> conforming(problem, kJump, kTheta,
-                                          multigrid::CurveMethod::conforming);
-    add(conforming, Solver::gcr, "gcr, conforming curves");
-  }
+  scenes::NewtonLevel<float> conforming(problem, kJump, kTheta, multigrid::CurveMethod::conforming);
+  add(conforming, Solver::gcr, "gcr, conforming curves");
   scenes::NewtonLevel<float> averaged(problem, kJump, kTheta);
   for (const Solver solver : kSolvers) add(averaged, solver, multigrid::name(solver));
 }

@@ -13,33 +13,47 @@ namespace {
 
 using Json = nlohmann::json;
 
+using Words = std::vector<std::string>;
+
 class DriverStart : public testing::Test {
  protected:
-  DriverStart() {
+  /// `way`: flags that say how curves are met.
+  explicit DriverStart(const Words& way = {"--curve-method", "averaged"}) : way_(way) {
     write_image({OIIO::ImageSpec(96, 64, 1, OIIO::TypeDesc::UINT8), std::vector<float>(96 * 64)},
                 scratch / "photo.png");
     EXPECT_EQ(run(10.0, {"--lattice", "ten.exr"}).exit_code, 0);
   }
 
   /// A square around the centre, moved to the right by `shift`.
-  RunResult run(double shift, const std::vector<std::string>& flags) {
+  RunResult run(double shift, const Words& flags) {
     const std::string square = "' d='M38 22 h20 v20 h-20 z'/></g>";
     const std::string layers = "<g id='source'><path id='a" + square +
                                "<g id='target' transform='translate(" + std::to_string(shift) +
                                ")'><path id='a-target" + square;
     scratch.write("curves.svg", drawing(96, 64, layers));
-    std::vector<std::string> words = {"warp",    "photo.png", "curves.svg",     "--cells",
-                                      "96",      "--report",  "r.json",         "-o",
-                                      "out.png", "--quiet",   "--curve-method", "averaged"};
-    words.insert(words.end(), flags.begin(), flags.end());
+    Words words = {"warp",     "photo.png", "curves.svg", "--cells", "96",
+                   "--report", "r.json",    "-o",         "out.png", "--quiet"};
+    for (const Words& more : {way_, flags}) words.insert(words.end(), more.begin(), more.end());
     return run_drumhead(scratch, words);
   }
   std::size_t levels() { return Json::parse(read_text(scratch / "r.json"))["levels"].size(); }
 
   Scratch scratch;
+
+ private:
+  Words way_;
 };
 
-TEST_F(DriverStart, FollowsADraggedCurveOnTheFinestLatticeAlone) {
+class DriverStartByAllWays : public DriverStart, public testing::WithParamInterface<Words> {
+ protected:
+  DriverStartByAllWays() : DriverStart(GetParam()) {}
+};
+INSTANTIATE_TEST_SUITE_P(
+    Ways, DriverStartByAllWays,
+    testing::Values(Words{"--curve-method", "averaged"}, Words{"--curve-method", "conforming"},
+                    Words{"--curve-method", "conforming", "--weight", "1000"}));
+
+TEST_P(DriverStartByAllWays, FollowsADraggedCurveOnTheFinestLatticeAlone) {
   ASSERT_GT(levels(), 1u);
   const RunResult moved =
       run(11.0, {"--start", "ten.exr", "--tolerance", "0.01", "--lattice", "moved.exr"});
@@ -59,7 +73,7 @@ TEST_F(DriverStart, FollowsADraggedCurveOnTheFinestLatticeAlone) {
 }
 
 // The tolerance is then a tenth of the error that the file's header tells.
-TEST_F(DriverStart, NeedsNoTolerance) {
+TEST_P(DriverStartByAllWays, NeedsNoTolerance) {
   EXPECT_EQ(run(10.5, {"--start", "ten.exr"}).exit_code, 0);
   EXPECT_EQ(levels(), 1u);
 }

@@ -91,6 +91,27 @@ TEST_F(DriverWarp, ACurveIsCarriedToItsTarget) {
   EXPECT_EQ(read_image(scratch / "o.png").width(), 11 * kWidth);  // small pictures are enlarged
 }
 
+TEST_F(DriverWarp, ASoftCurveIsMetPartlyByEitherWay) {
+  draw_shift(10);
+  auto run = [&](const std::string& method, const std::string& weight) {
+    const RunResult result =
+        run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "--cells", "48", "-o", "out.png",
+                               "--report", "r.json", "--weight", weight, "--curve-method", method});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Json report = Json::parse(read_text(scratch / "r.json"));
+    EXPECT_EQ(report["curve_method"], method);
+    return report;
+  };
+  const Json soft = run("conforming", "100"), averaged = run("averaged", "100"),
+             stiff = run("conforming", "1e5");
+  const double gap = soft["curves"][0]["gap_rms_px"];
+  EXPECT_GT(gap, 0.2);
+  EXPECT_LT(gap, 5.0);
+  EXPECT_NEAR(gap, averaged["curves"][0]["gap_rms_px"].get<double>(), 0.1 * gap);
+  EXPECT_GT(soft["energy"]["constraint"], 1e-4);
+  EXPECT_LT(stiff["curves"][0]["gap_rms_px"], 0.05 * gap);
+}
+
 TEST_F(DriverWarp, ASceneDoesWhatItsFlagsDo) {
   draw_shift(6);
   scratch.write("scene.toml",
