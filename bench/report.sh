@@ -96,11 +96,11 @@ if [ "$measure" ]; then
   stage amg amg_bench ${large:+--all}
   stage warps warps_bench
   stage stability stability_bench
+  stage study stability_bench --exact 32 --exact 128
   stage membranes membranes_bench
   stage masks masks_bench
   stage rates rates_bench 128
-  stage rates_64 rates_bench 64
-  stage rates_256 rates_bench 256
+  stage rates_512 rates_bench 512
   stage direct direct_bench
   stage direct_sponge direct_bench --sponge 150 300
   stage direct_threads direct_bench --sponge --threads "$cores" 50 100 150 200 300

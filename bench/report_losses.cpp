@@ -122,11 +122,12 @@ Losses rates(const Rows& rows) {
     const std::string where =
         scene_of(ours) + ", " + figure(value(ours, "n")) + "²" +
         (std::isfinite(value(ours, "weight")) ? ", d " + figure(value(ours, "weight"))
-                                              : std::string());
+                                              : std::string()) +
+        (ours.value("exact", false) ? ", exact" : "");
     if (!ours.value("converged", true)) found.words.push_back(where + ": gcr does not converge.");
     for (const Json& peer : rows)
       if (!text(peer, "solver").starts_with("gcr") && peer.value("converged", true) &&
-          same(ours, peer, {"scene", "kappa", "n", "weight"}) &&
+          same(ours, peer, {"scene", "kappa", "n", "weight", "exact"}) &&
           value(peer, "work_units_per_digit") < value(ours, "work_units_per_digit"))
         found.words.push_back(where + ": " + text(peer, "solver") + " takes " +
                               figure(value(peer, "work_units_per_digit")) + " work units, gcr " +

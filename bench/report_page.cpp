@@ -132,7 +132,7 @@ std::string page_of(const Measurements& measured, const std::string& pictures) {
     parts[std::string("plots_") + section] = figures(drawn, section);
   std::string others;
   const std::string placed =
-      " table1 table1_memory precision tolerances rates warps stability stability_all ";
+      " table1 table1_memory precision tolerances rates warps stability study stability_all ";
   for (const Sheet& sheet : sheets(measured)) {
     if (placed.find(" " + sheet.id + " ") == std::string::npos)
       others += html_with_title(sheet);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace drumhead::bench {
 namespace {
@@ -146,11 +147,16 @@ void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
     }
 }
 
-/// d of the curves; they are hard where a row names none.
+/// d of the curves; they are hard where a row names none, and then may be exact.
 double weight_of(const Json& row) {
   return row.contains("weight") ? value(row, "weight") : std::numeric_limits<double>::infinity();
 }
-bool hard(const Json& row) { return std::isinf(weight_of(row)); }
+bool exact(const Json& row) { return row.value("exact", false); }
+bool hard(const Json& row) { return std::isinf(weight_of(row)) && !exact(row); }
+bool soft(const Json& row) { return std::isfinite(weight_of(row)); }
+std::string stiffness_of(const Json& row) {
+  return exact(row) ? "exact" : hard(row) ? "hard" : figure(weight_of(row));
+}
 
 std::string scene_and_kappa(const Json& row) {
   return text(row, "scene") + ", kappa " + figure(value(row, "kappa"));
@@ -165,7 +171,7 @@ void add_rates_over_lattices(const Rows& gcr, const Number& rate, std::vector<Re
                     .y_name = "work units per digit",
                     .x_at_points = true}};
   sizes.plot.series = lines_of(where(gcr, hard), scene_and_kappa, number_of("n"), rate);
-  std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 3; });
+  std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 2; });
   for (std::size_t k = 0; k < sizes.plot.series.size(); ++k) sizes.plot.series[k].look = int(k) % 8;
   all.push_back(std::move(sizes));
 }
@@ -197,23 +203,25 @@ void add_rates_over_weights(const Rows& gcr, const Number& rate, std::vector<Rep
   const auto like = [](const Json& a) {
     return [&a](const Json& b) {
       return text(a, "scene") == text(b, "scene") && value(a, "kappa") == value(b, "kappa") &&
-             value(a, "n") == value(b, "n") && !hard(b);
+             value(a, "n") == value(b, "n") && soft(b);
     };
   };
-  const Rows soft =
+  const Rows tried =
       where(gcr, [&](const Json& row) { return std::ranges::any_of(gcr, like(row)); });
-  ReportPlot weights{"rates_d",
-                     "scaling",
-                     "One Newton system, gcr.",
-                     {.title = "Work for a factor of ten over the curves' stiffness d",
-                      .x_name = "d, stiffness per length, in mu per picture side",
-                      .y_name = "work units per digit"}};
-  Rows ascending = soft;
-  std::ranges::stable_sort(ascending, {}, weight_of);
-  weights.plot.x_words =
-      distinct(ascending, [](const Json& row) { return figure(weight_of(row)); });
+  ReportPlot weights{
+      "rates_d",
+      "scaling",
+      "One Newton system, gcr. Hard: d 1e6 with the q-jump; exact: rows without both, "
+      "in double precision.",
+      {.title = "Work for a factor of ten over the curves' stiffness d",
+       .x_name = "d, stiffness per length, in mu per picture side",
+       .y_name = "work units per digit"}};
+  Rows ascending = tried;
+  std::ranges::stable_sort(ascending, {},
+                           [](const Json& row) { return std::pair(weight_of(row), exact(row)); });
+  weights.plot.x_words = distinct(ascending, stiffness_of);
   const auto stiffness = [words = weights.plot.x_words](const Json& row) {
-    return double(std::ranges::find(words, figure(weight_of(row))) - words.begin());
+    return double(std::ranges::find(words, stiffness_of(row)) - words.begin());
   };
   weights.plot.series = lines_of(
       ascending,

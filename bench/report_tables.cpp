@@ -2,6 +2,7 @@
 #include "report_tables.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace drumhead::bench {
 namespace {
@@ -45,6 +46,19 @@ std::string outcome(const Json& row) {
          figure(value(row, "folded")) + " folded";
 }
 
+std::string energy_of(const Json& row, const char* key) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.7f", value(row, key));
+  return digits;
+}
+/// Outcome of a case of the study, marked where it is exact and not as expected.
+std::string study_outcome(const Json& row) {
+  const std::string note = text(row, "note");
+  return text(row, "ended") + (row.value("passed", true) ? ", " : "*, ") +
+         figure(value(row, "newton")) + " (" + figure(value(row, "newton_all")) + ") steps, " +
+         energy_of(row, "energy") + (note.empty() ? "" : "; " + note);
+}
+
 std::vector<Column> precision_columns() {
   return {kScene,
           word("method", "method"),
@@ -67,6 +81,7 @@ std::vector<Column> solve_columns() {
           kLattice,
           kStatus,
           number("work units", "work_units"),
+          number("a unit's product, of streaming", "product_of_streaming"),
           number("seconds", "seconds"),
           number("of them cutting", "cut_seconds"),
           kSteps,
@@ -74,7 +89,9 @@ std::vector<Column> solve_columns() {
           number("curve gap, px", "gap_rms_px"),
           number("discretisation error, px", "discretisation_px"),
           number("algebraic error, estimated share of it", "algebraic_share"),
-          number("true share", "true_share")};
+          number("true share", "true_share"),
+          number("gain of two threads", "threads_gain"),
+          number("share of streaming's gain", "gain_share")};
 }
 
 }  // namespace
@@ -102,11 +119,14 @@ std::vector<Across> tables_across() {
       {"rates", "Work units for a factor of ten, one Newton system", "rates_bench",
        "Processor time in Hessian–vector products that each linear solver takes to reduce the "
        "residual by ten, over a reduction by 1000; in brackets cycles or iterations. *: given up "
-       "before; –: less than an eighth gained.",
+       "before, at 512² after an eighth of the cycles; –: less than an eighth gained. Curves are "
+       "hard (d 1e6, with q-jump) where no d is named; exact: 1/d = 0 without the jump, in double "
+       "precision.",
        "rates", "scene",
        [](const Json& row) {
          std::string name = lattice_of(row) + " " + kScene.cell(row);
          if (std::isfinite(value(row, "weight"))) name += ", d " + figure(value(row, "weight"));
+         if (row.value("exact", false)) name += ", exact";
          return name;
        },
        [](const Json& row) { return text(row, "solver"); },
@@ -128,6 +148,20 @@ std::vector<Across> tables_across() {
          return text(row, "group") + ": " + text(row, "case") + " (" + text(row, "expected") + ")";
        },
        [](const Json& row) { return text(row, "method"); }, outcome, false, true},
+      {"study", "The 31 cases of the study: status, Newton steps, energy", "stability_bench",
+       "Per mu and lattice area; steps on the finest lattice, in brackets those of all lattices "
+       "and "
+       "of the paths that lead to the first state. Beside each case the least energy that is known "
+       "at 32² with exact rows: !: the only minimum that was found, elsewhere there are several. A "
+       "finer lattice has less, rows that are not exact have less. *: exact rows that did not "
+       "converge, or at 32² took a larger energy than that of the only minimum.",
+       "study", "case (least energy known at 32²)",
+       [](const Json& row) {
+         return text(row, "case") + " (" + energy_of(row, "known") +
+                (row.value("unique", false) ? "!)" : ")");
+       },
+       [](const Json& row) { return lattice_of(row) + " " + text(row, "method"); }, study_outcome,
+       false, true},
   };
 }
 
@@ -147,7 +181,11 @@ std::vector<List> lists() {
         number("largest error, px", "max_px"), kSteps, kStatus}},
       {"solve", "Whole solves", "solve_bench",
        "To a tenth of the estimated discretisation error. The true share compares with a solve to "
-       "a hundredth of the tolerance.",
+       "a hundredth of the tolerance. A unit's product, of streaming: the Hessian–vector product "
+       "beside a loop that moves its bytes alone, in turns; 1 is the speed of memory. Gains at "
+       "800² "
+       "alone: seconds on one thread by those on two, of the solve, and that by the same of the "
+       "streaming loop, in turns.",
        "solve", solve_columns()},
       {"direct",
        "The same Newton's method with sparse direct solvers, same lattice and equations",

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The whole solve on the study scenes (curves clear of lattice lines, picture of 1000 px): work
-// units, time, memory and errors, as rows of JSON (results.h).
+// units, time, memory and errors, as rows of JSON (results.h). Beside them
+//
+//     product_of_streaming     a work unit's Hessian–vector product against the loop that moves its
+//                              bytes and computes nothing, in turns with it (roofline.h): 1 is the
+//                              speed of memory
+//     threads_gain, stream_gain, gain_share      at 800², in turns: seconds on one thread by those
+//                              on two, of the solve and of that loop, and the first by the second
 //   solve_bench [--large] [--threads N]      --large: also 1600² and 3200²
 #include <cmath>
 #include <cstdio>
@@ -8,6 +14,11 @@
 #include <string_view>
 #include <vector>
 
+#include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/threads.h>
+
+#include "bench_level.h"
+#include "roofline.h"
 #include "solution_values.h"
 #include "support/scene_problem.h"
 
@@ -16,6 +27,41 @@ namespace {
 
 // Conforming cells leave so little that the reference needs double precision.
 constexpr int kMostForError = 800, kMostForConformingError = 200;
+
+// A product reads d, x̂ and P and writes the image of d: three fields each.
+constexpr Mix kProduct{6, 3, 0};
+constexpr int kThreadCells = 800, kGainPairs = 5;
+
+/// The speed of the Hessian–vector product on n² cells, as a share of its streaming loop's.
+double product_of_streaming(int n) {
+  const kernels::ThreadLimit one(1);
+  BenchLevel<float> level(n);
+  const Streams streams(kProduct, level.nodes(), sizeof(float));
+  const auto product = [&] {
+    kernels::apply_hessian<float>(level.membrane(), level.d.view(), level.out.view());
+  };
+  return Paired(1, product, [&] { streams.run(1); }).ratio();
+}
+
+/// Gains of a second thread, as values of a row.
+Json gains(const multigrid::WarpProblem& problem, multigrid::SolverOptions options) {
+  const Streams streams(kProduct, problem.lattice.nodes(), sizeof(float));
+  std::vector<double> solve, stream;
+  for (int pair = 0; pair < kGainPairs; ++pair) {
+    double seconds[2];
+    for (const int threads : {1, 2}) {
+      options.threads = threads;
+      seconds[threads - 1] = seconds_of(multigrid::solve(problem, options));
+    }
+    solve.push_back(seconds[0] / seconds[1]);
+    const Paired loops(
+        2, [&] { streams.run(2); }, [&] { streams.run(1); });
+    stream.push_back(loops.ratio());
+  }
+  return {{"threads_gain", median(solve)},
+          {"stream_gain", median(stream)},
+          {"gain_share", median(solve) / median(stream)}};
+}
 
 struct Case {
   scenes::Scene scene;
@@ -47,7 +93,8 @@ double true_error(const multigrid::WarpProblem& problem, const multigrid::Soluti
   return difference(solution, multigrid::solve(problem, options));
 }
 
-void run(const Case& c, multigrid::CurveMethod curves, int n, int threads, Results& results) {
+void run(const Case& c, multigrid::CurveMethod curves, int n, int threads, double streaming,
+         Results& results) {
   const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
   const multigrid::SolverOptions options{.curve_method = curves, .threads = threads};
   const multigrid::Solution solution = multigrid::solve(problem, options);
@@ -58,6 +105,8 @@ void run(const Case& c, multigrid::CurveMethod curves, int n, int threads, Resul
   if (n <= (conforming ? kMostForConformingError : kMostForError))
     row["true_share"] =
         true_error(problem, solution, options) / (kPicture * solution.report.discretisation_rms_px);
+  row["product_of_streaming"] = streaming;
+  if (n == kThreadCells && threads == 1) row.update(gains(problem, options));
   results.row("solve", row);
 }
 
@@ -82,8 +131,11 @@ int main(int argc, char** argv) {
   bench::Results results(argc, argv);
   std::vector<int> sizes{100, 200, 400, 800};
   if (large) sizes.insert(sizes.end(), {1600, 3200});
+  std::vector<double> streaming;
+  for (const int n : sizes) streaming.push_back(bench::product_of_streaming(n));
   for (const bench::Case& c : bench::cases())
     for (const auto curves : {multigrid::CurveMethod::averaged, multigrid::CurveMethod::conforming})
-      for (const int n : sizes) bench::run(c, curves, n, threads, results);
+      for (std::size_t k = 0; k < sizes.size(); ++k)
+        bench::run(c, curves, sizes[k], threads, streaming[k], results);
   return 0;
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
+#include "exact_rows.h"
 #include "level_change.h"
 #include "volume_gap.h"
 
@@ -63,19 +65,6 @@ constexpr double kGentleContent = 0.8, kCoarseShare = 0.3, kGentleStart = 0.02;
 // no coarser start could not do with. S2 and S4 at kappa 100 with kContent and a tenth: 88 and 57
 // ms at 200², 405 and 325 at 400²; with these 91, 55, 260, 146.
 constexpr double kStiffReduction = 0.5;
-// Exact constraints: no node moves further than this in the last step, in finest cells.
-constexpr double kExactMove = 1e-7;
-constexpr int kExactSteps = 400;
-// Exact rows keep a trace of the q-jump in their preconditioner: S2 kappa 10, 32² takes 412, 270,
-// 191, 163, 231 cycles with .005, 5e-4, 5e-5, 1e-5, 0; kappa 100 1033, 669, 508, 491, 1147.
-constexpr double kTraceOfJump = 5e-5;
-constexpr double kExactReduction = 1e-2;
-// Full steps after which a lowered clamp rises again.
-constexpr int kPatience = 4;
-// Exact rows: kappa grows to its value from kFirstKappa by kKappaGrows at a time.
-constexpr double kFirstKappa = 10.0, kKappaGrows = 10.0, kMostLimit = 2e4;
-// An exact row that is off by more than this many cells at the end could not be met.
-constexpr double kRowMet = 1e-3;
 constexpr std::size_t kSmallNodes = 20000;
 // Up to these kappa/mu, on the start level and on the others, V-cycles take the place of F-cycles
 // on lattices of few nodes, where a visit to a coarse level costs more than its nodes. S1 kappa 1,
@@ -139,30 +128,6 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start,
   return linear;
 }
 
-/// The last steps of exact constraints, from the solution `with_jump`, until no node moves.
-template <class T>
-NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
-                          NewtonReport with_jump, const LevelProgress& progress) {
-  hierarchy.drop_jump(kTraceOfJump);
-  const bool small = hierarchy[0].nodes() < kSmallNodes;
-  NewtonOptions options;
-  options.most_steps = kExactSteps;
-  options.tolerance_rms = options.tolerance_max = kExactMove;
-  options.linear = {.solver = solver,
-                    .content = kExactReduction,
-                    .reduction = kExactReduction,
-                    .most_cycles = 200,
-                    .directions = small ? 100 : 20};
-  options.adaptive = true;
-  ClampSchedule clamp{.patience = kPatience};
-  NewtonReport done = newton.run(options, clamp, progress);
-  if (!(newton.largest_row_gap() < kRowMet)) done.status = Status::infeasible;
-  done.steps.insert(done.steps.begin(), with_jump.steps.begin(), with_jump.steps.end());
-  done.change_rms += with_jump.change_rms;
-  done.change_max += with_jump.change_max;
-  return done;
-}
-
 }  // namespace
 
 LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell_px) {
@@ -175,33 +140,18 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 
 namespace {
 
-/// Exact rows on the start level, with a harmonic state: Newton for ever larger kappa, all but the
-/// last. At once, stiff scenes end in worse minima, or nowhere (S2 turned by 135°, kappa 1e4).
+/// The first state on the start level: harmonic, and for large rotations on along the load path,
+/// whose steps are returned.
 template <class T>
-void stiffen(const NestedOptions& options, NewtonOptions newton_options, Newton<T>& newton,
-             ClampSchedule& clamp, const LevelProgress& progress) {
-  clamp.patience = kPatience;
-  newton_options.linear.content = newton_options.linear.reduction = kExactReduction;
-  newton_options.adaptive = true;
-  const double last = std::min(options.largest_kappa, kMostLimit);
-  for (double kappa = kFirstKappa; kappa < last; kappa *= kKappaGrows) {
-    options.limit_kappa(kappa);
-    newton.run(newton_options, clamp, progress);
-    clamp.theta = 1.0;
-  }
-  options.limit_kappa(options.largest_kappa);
-}
-
-/// The first state on the start level: harmonic, and for large rotations on along the load path.
-template <class T>
-void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
-                const NewtonOptions& newton_options, Newton<T>& newton, ClampSchedule& clamp,
-                const LevelProgress& progress) {
+std::vector<NewtonStep> find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
+                                   const NewtonOptions& newton_options, Newton<T>& newton,
+                                   ClampSchedule& clamp, const LevelProgress& progress) {
   LinearOptions harmonic = newton_options.linear;
   harmonic.content = harmonic.reduction = kHarmonic;
+  std::vector<NewtonStep> taken;
   if (!options.set_targets) {
     newton.harmonic(harmonic);
-    return;
+    return taken;
   }
   for (int n = 1; n < kPathSteps; ++n) {
     options.set_targets(start, double(n) / kPathSteps);
@@ -210,10 +160,14 @@ void find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options
     part.most_steps = kStepsPerPathStep;
     part.tolerance_rms = 0.05 * double(hierarchy[start].spacing);
     clamp = {};
-    newton.run(part, clamp, part_of(progress, double(n - 1) / kPathSteps, double(n) / kPathSteps));
+    const LevelProgress share =
+        part_of(progress, double(n - 1) / kPathSteps, double(n) / kPathSteps);
+    const NewtonReport done = newton.run(part, clamp, share);
+    taken.insert(taken.end(), done.steps.begin(), done.steps.end());
   }
   options.set_targets(start, 1.0);
   clamp = {};
+  return taken;
 }
 
 bool ended_early(Status status) {
@@ -291,13 +245,16 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, start);
     Newton<T> newton(hierarchy, l, meter);
     std::optional<LevelCopy<T>> coarse;
+    std::vector<NewtonStep> path;  // to the state that the level's own run begins with
     set_options(hierarchy, l, l == start, options, newton_options);
     if (l == start) {
       if (options.limit_kappa) options.limit_kappa(kFirstKappa);
-      find_start(hierarchy, start, options, newton_options, newton, clamp,
-                 part_of(progress, 0.0, kPathShare));
+      path = find_start(hierarchy, start, options, newton_options, newton, clamp,
+                        part_of(progress, 0.0, kPathShare));
       if (options.limit_kappa)
-        stiffen(options, newton_options, newton, clamp, part_of(progress, kPathShare, kPathShare));
+        std::ranges::copy(stiffen(options, newton_options, newton, clamp,
+                                  part_of(progress, kPathShare, kPathShare)),
+                          std::back_inserter(path));
     } else {
       // What a finer level changes is small: the positive definite Hessian does, until it does not.
       clamp.theta = 1.0;
@@ -312,8 +269,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     newton_options.least_rate = hierarchy.traits().stiffness >= kStiff ? kStiffRate : 0.0;
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
     if (exact && !ended_early(done.status))
-      done = without_jump(hierarchy, options.solver, newton, std::move(done),
-                          part_of(progress, kJumpShare, 1.0));
+      done = without_jump(hierarchy, options.solver, newton, done,
+                          part_of(progress, kJumpShare, 1.0), cell_px, report.notes);
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;
@@ -329,7 +286,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     }
     report.discretisation_rms_px = share * change.rms * cell_px;
     report.discretisation_max_px = share * change.max * cell_px;
-    report.levels.push_back(in_pixels(level.nx, level.ny, std::move(done.steps), cell_px));
+    path.insert(path.end(), done.steps.begin(), done.steps.end());
+    report.levels.push_back(in_pixels(level.nx, level.ny, std::move(path), cell_px));
     if (ended_early(report.status)) return end_early(hierarchy, l, report);
   }
   note_areas(report);

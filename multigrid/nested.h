@@ -9,6 +9,9 @@
 
 namespace drumhead::multigrid {
 
+/// Exact rows: kappa of the first state, from which it grows (exact_rows.h).
+inline constexpr double kFirstKappa = 10.0;
+
 struct NestedOptions {
   Solver solver = Solver::gcr;
   bool exact = false;

@@ -134,6 +134,7 @@ std::vector<HardCase> study_cases(int n) {
     Scene scene;
     std::array<int, 5> most_steps;  // at kappa/mu 1, 10, 100, 1e4, infinity
     std::array<double, 5> energy_at_32;
+    bool unique = true;  // up to kappa 100
   };
   const std::array studies = {
       Study{"S1",
@@ -151,9 +152,10 @@ std::vector<HardCase> study_cases(int n) {
       Study{"S2 180 degrees",
             roundabout(180.0),
             {8, 14, 10, 10, 10},
-            {3.5492704, 5.5049, 6.0679, 6.3629, 6.4931}},
+            {3.5492704, 5.5049, 6.0679, 6.3629, 6.4931},
+            false},
       Study{"S4", shift(), {8, 8, 12, 12, 12}, {1.2596883, 1.530912, 1.7914657, 1.8856549, 1.9029}},
-      Study{"S5", fold(), {8, 18, 28, 28, 28}, {1.2695584, 1.9815, 2.4678, 2.5723, 2.5597}}};
+      Study{"S5", fold(), {8, 18, 28, 28, 28}, {1.2695584, 1.9815, 2.4678, 2.5723, 2.5597}, false}};
   constexpr std::array kKappas = {1.0, 10.0, 100.0, 1e4, kInfinity};
   constexpr std::array kNames = {"1", "10", "100", "1e4", "infinity"};
   std::vector<HardCase> all;
@@ -163,12 +165,14 @@ std::vector<HardCase> study_cases(int n) {
                      .name = std::string(study.name) + ", kappa " + kNames[k],
                      .problem = problem(study.scene, n, kKappas[k]),
                      .most_steps = study.most_steps[k],
-                     .energy_at_32 = study.energy_at_32[k]});
+                     .energy_at_32 = study.energy_at_32[k],
+                     .unique = study.unique && kKappas[k] <= 100.0});
   all.push_back({.group = "study",
                  .name = "S3, kappa 1000 in 0.1",
                  .problem = problem(pinch(), n, 1.0),
                  .most_steps = 14,
-                 .energy_at_32 = 1.1267049});
+                 .energy_at_32 = 1.1267049,
+                 .unique = true});
   return all;
 }
 

@@ -18,6 +18,9 @@ struct HardCase {
   int most_steps = 0;  ///< Newton's, on the finest lattice; about twice what was found
   /// Least energy found on 32² cells with exact rows, 0: unknown. A finer lattice has less.
   double energy_at_32 = 0.0;
+  /// Whether that energy is of the only minimum there is, as far as all searches found: kappa up to
+  /// 100, turns up to 135 degrees, no curves that ask for a fold.
+  bool unique = false;
   double most_gap_px = std::numeric_limits<double>::infinity();  ///< of any curve
 };
 inline void PrintTo(const HardCase& c, std::ostream* out) { *out << c.name; }

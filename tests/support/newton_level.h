@@ -13,6 +13,7 @@
 #include <drumhead/kernels/reduce.h>
 #include <drumhead/multigrid/warp.h>
 
+#include "exact_rows.h"
 #include "krylov.h"
 #include "nested.h"
 
@@ -21,14 +22,16 @@ namespace drumhead::scenes {
 template <class T>
 class NewtonLevel {
  public:
-  /// `jump`: qs of the equations and of the preconditioner; `theta`: clamp of P in the Hessian.
+  /// `jump`: qs of the equations and of the preconditioner; `theta`: clamp of P in the Hessian;
+  /// `most_weight`: d of hard curves.
   NewtonLevel(const multigrid::WarpProblem& problem, double jump, double theta,
-              multigrid::CurveMethod method = multigrid::CurveMethod::averaged)
+              multigrid::CurveMethod method = multigrid::CurveMethod::averaged,
+              double most_weight = kMostWeight)
       : hierarchy_(
             problem.lattice, compressible(problem.material),
             grid::cut(method == multigrid::CurveMethod::averaged ? problem.curves
                                                                  : std::vector<grid::CurvePair>{},
-                      problem.lattice, kMostWeight),
+                      problem.lattice, most_weight),
             {.pressure = problem.material.kappa > 0.0,
              .stiffness = grid::largest_stiffness(problem.material),
              .jump = jump,
@@ -46,6 +49,9 @@ class NewtonLevel {
     level().clamp_centre = median_pressure();
     level().clamp_width = T(theta);
   }
+
+  /// No jump in the equations, in the preconditioner that of exact rows.
+  void drop_jump() { hierarchy_.drop_jump(multigrid::kTraceOfJump); }
 
   multigrid::Level<T>& level() { return hierarchy_[0]; }
   bool pressure() { return bool(level().pressure); }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What exact curve rows (SolverOptions::exact) ask of Newton's method besides: a kappa that grows
+// step by step on the level where the iteration starts, and on the finest level last steps without
+// the q-jump, until no node moves.
+#include "nested.h"
+
+namespace drumhead::multigrid {
+
+/// A trace of the q-jump that stays in the preconditioner: S2 kappa 10, 32² takes 412, 270, 191,
+/// 163, 231 cycles with .005, 5e-4, 5e-5, 1e-5, 0; kappa 100 1033, 669, 508, 491, 1147.
+inline constexpr double kTraceOfJump = 5e-5;
+
+/// On the start level, with a harmonic state: Newton for ever larger kappa, all but the last. At
+/// once, stiff scenes end in worse minima, or nowhere (S2 turned by 135°, kappa 1e4). Returns the
+/// steps taken.
+template <class T>
+std::vector<NewtonStep> stiffen(const NestedOptions& options, NewtonOptions newton_options,
+                                Newton<T>& newton, ClampSchedule& clamp,
+                                const LevelProgress& progress);
+
+/// On the finest level, from the solution `with_jump`, whose steps and changes are counted. Where
+/// that does not converge, `notes` gets a statement of what is left.
+template <class T>
+NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
+                          const NewtonReport& with_jump, const LevelProgress& progress,
+                          double cell_px, std::vector<std::string>& notes);
+
+}  // namespace drumhead::multigrid
