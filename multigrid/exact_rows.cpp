@@ -60,6 +60,9 @@ std::string statement(const NewtonReport& done, double row_gap, double cell_px) 
   if (done.status == Status::infeasible)
     return "exact curve rows contradict one another: one is missed by " +
            figure(row_gap * cell_px) + " px";
+  if (done.status == Status::not_finite)
+    return "exact curve rows: a number that is not finite appeared; rows are met to " +
+           figure(row_gap * cell_px) + " px";
   double move = 0.0, residual = 0.0;
   const std::size_t last = std::min(done.steps.size(), kLastSteps);
   for (auto step = done.steps.end() - std::ptrdiff_t(last); step != done.steps.end(); ++step) {
@@ -117,7 +120,7 @@ NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& new
     append(newton.run(options, open, part_of(progress, kClampedShare, 1.0)), done);
   }
   const double row_gap = newton.largest_row_gap();
-  if (!(row_gap < kRowMet)) done.status = Status::infeasible;
+  if (!(row_gap < kRowMet) && done.status != Status::not_finite) done.status = Status::infeasible;
   if (done.status != Status::converged) notes.push_back(statement(done, row_gap, cell_px));
   return done;
 }

@@ -44,7 +44,9 @@ TEST(ExactCases, AllButOneConverge) {
     EXPECT_NE(report.status, multigrid::Status::infeasible) << c.name;
     EXPECT_LE(int(steps.size()), kMostSteps) << c.name;
     EXPECT_GT(report.energy.elastic, 1.0) << c.name;
-    if (c.unique) EXPECT_LE(report.energy.total, (1.0 + kRounding) * c.energy_at_32) << c.name;
+    if (c.unique) {
+      EXPECT_LE(report.energy.total, (1.0 + kRounding) * c.energy_at_32) << c.name;
+    }
   }
 }
 
