@@ -119,6 +119,7 @@ NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& new
     ClampSchedule open{.theta = ClampSchedule{}.most};
     append(newton.run(options, open, part_of(progress, kClampedShare, 1.0)), done);
   }
+  if (done.status == Status::cancelled) return done;
   const double row_gap = newton.largest_row_gap();
   if (!(row_gap < kRowMet) && done.status != Status::not_finite) done.status = Status::infeasible;
   if (done.status != Status::converged) notes.push_back(statement(done, row_gap, cell_px));
