@@ -15,7 +15,8 @@
 namespace drumhead {
 namespace {
 
-constexpr int kCells = 32, kMostSteps = 250;
+// Steps of the paths to the first state included.
+constexpr int kCells = 32, kMostSteps = 320;
 
 /// Rows met and energy flat, but nodes go on moving by more than 1e-7 cells a step.
 constexpr std::string_view kStalls = "S2 180 degrees, kappa infinity";
