@@ -15,6 +15,8 @@ namespace {
 
 using multigrid::CurveMethod;
 
+constexpr CurveMethod kMethods[] = {CurveMethod::averaged, CurveMethod::conforming};
+
 multigrid::Solution solved(const scenes::Scene& scene, int n, kernels::Model model, double kappa,
                            CurveMethod curves = CurveMethod::averaged) {
   multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
@@ -27,12 +29,15 @@ void all_models(Results& results) {
   for (const kernels::ModelInfo& info : kernels::kModels)
     for (const scenes::Scene& scene :
          {scenes::sponge(offset), scenes::roundabout(45.0, offset), scenes::shift(offset)})
-      results.row("membranes", joined({{"model", std::string(info.name)}, {"scene", scene.name}},
-                                      values_of(solved(scene, 128, info.model, 1.0))));
+      for (const multigrid::CurveMethod method : kMethods)
+        results.row("membranes", joined({{"model", std::string(info.name)},
+                                         {"scene", scene.name},
+                                         {"curves", multigrid::name(method)}},
+                                        values_of(solved(scene, 128, info.model, 1.0, method))));
 }
 
-void eq8(Results& results, const scenes::Scene& scene, int n, double kappa) {
-  const multigrid::Solution solution = solved(scene, n, kernels::Model::arap, kappa);
+void eq8(Results& results, const scenes::Scene& scene, int n, double kappa, CurveMethod method) {
+  const multigrid::Solution solution = solved(scene, n, kernels::Model::arap, kappa, method);
   int most = 0;
   std::string inverted;  // after each step
   for (const multigrid::LevelReport& level : solution.report.levels) {
@@ -42,7 +47,9 @@ void eq8(Results& results, const scenes::Scene& scene, int n, double kappa) {
       inverted += " " + std::to_string(step.inverted_cells);
     }
   }
-  Json row = joined({{"scene", scene.name}, {"kappa", kappa}, {"n", n}}, values_of(solution));
+  Json row = joined(
+      {{"scene", scene.name}, {"kappa", kappa}, {"n", n}, {"curves", multigrid::name(method)}},
+      values_of(solution));
   row["most_inverted"] = most;
   row["inverted_after_steps"] = inverted;
   results.row("eq8", row);
@@ -51,9 +58,11 @@ void eq8(Results& results, const scenes::Scene& scene, int n, double kappa) {
 void eq8(Results& results) {
   for (const scenes::Scene& scene : {scenes::many_discs(), scenes::turning_discs()})
     for (const int n : {48, 192})
-      for (const double kappa : {1e3, 1e4, 1e6}) eq8(results, scene, n, kappa);
+      for (const double kappa : {1e3, 1e4, 1e6})
+        for (const CurveMethod method : kMethods) eq8(results, scene, n, kappa, method);
   // Beside locally injective maps, which the study timed on this lattice.
-  eq8(results, scenes::sponge(scenes::kStudyOffset), 200, 1e4);
+  for (const CurveMethod method : kMethods)
+    eq8(results, scenes::sponge(scenes::kStudyOffset), 200, 1e4, method);
 }
 
 /// RMS distance of two solutions over the nodes of their lattice, px.

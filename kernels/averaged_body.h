@@ -10,9 +10,6 @@
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
-/// Upper triangle by rows: a₁a₁ a₁a₂ a₁b₁ a₁b₂ a₂a₂ a₂b₁ a₂b₂ b₁b₁ b₁b₂ b₂b₂.
-constexpr int kTangentEntries = 10;
-
 template <class B>
 struct CellTangent {
   B at[kTangentEntries];
@@ -43,17 +40,8 @@ template <class Model, class T>
       B sum[kTangentEntries];
       for (B& entry : sum) entry = zero;
       for_points<T, Model>(cell, [&](auto density, T s, T t, const Parameters<B>& c) {
-        const Tangent<T, B> p(density, cell.at(s, t), c, B(m.clamp_width));
-        const B part[kTangentEntries] = {p.aa * (p.a1 * p.a1) + p.twist * (p.a2 * p.a2),
-                                         (p.aa - p.twist) * (p.a1 * p.a2),
-                                         p.ab * (p.a1 * p.b1),
-                                         p.ab * (p.a1 * p.b2),
-                                         p.aa * (p.a2 * p.a2) + p.twist * (p.a1 * p.a1),
-                                         p.ab * (p.a2 * p.b1),
-                                         p.ab * (p.a2 * p.b2),
-                                         p.bb * (p.b1 * p.b1) + p.flip * (p.b2 * p.b2),
-                                         (p.bb - p.flip) * (p.b1 * p.b2),
-                                         p.bb * (p.b2 * p.b2) + p.flip * (p.b1 * p.b1)};
+        B part[kTangentEntries];
+        Tangent<T, B>(density, cell.at(s, t), c, B(m.clamp_width)).entries(part);
         for (int e = 0; e < kTangentEntries; ++e) sum[e] = sum[e] + part[e];
       });
       for (int e = 0; e < kTangentEntries; ++e) lane.store(B(T(0.25)) * sum[e], row[e] + k);

@@ -11,6 +11,7 @@
 #include "parallel.h"
 #include "soft_sweeps.h"
 #include "special_energy.h"
+#include "special_isotropic.h"
 #include "special_sweeps.h"
 
 namespace drumhead::kernels {
@@ -80,8 +81,12 @@ EnergySums energy(const Membrane<T>& m, const Unknowns<const T>& d, T step) {
   of_row.assign(static_cast<std::size_t>(rows), {});
   EnergySums* const at = of_row.data();
   for_rows(0, rows, m.ux.columns, [&](int j) {
-    if (row_energy) return row_energy(m, d, step, at[j], j);
     const Columns special = m.special ? special_columns(m.special->cells(), j) : Columns{};
+    if (row_energy) {
+      row_energy(m, d, step, special, at[j], j);
+      if (m.special) add_special_isotropic_energy(m, d, step, at[j], j);
+      return;
+    }
     kernels.energy(m, d, step, bool(d.x), special, at[j], j);
     if (m.special) add_special_energy(m, d, step, at[j], j);
   });

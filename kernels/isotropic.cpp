@@ -6,11 +6,15 @@
 #include <drumhead/kernels/threads.h>
 #include <drumhead/kernels/transfer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "kernel_table.h"
 #include "parallel.h"
+#include "special_energy.h"
+#include "special_isotropic.h"
+#include "special_sweeps.h"
 
 namespace drumhead::kernels {
 namespace {
@@ -51,13 +55,25 @@ void residual(const LevelSystem<T>& level) {
 }
 
 template <class T>
-void restrict_residual(const Plane<const T>& fine, const Plane<T>& coarse) {
+void restrict_residual(const LevelSystem<T>& level, const Plane<const T>& fine,
+                       const Plane<T>& coarse) {
   for_rows(1, coarse.rows - 1, fine.columns, [&](int j) {
     const int above = 2 * j + 1;
     const SplitRow<const T> upper = fine.row(above < fine.rows ? above : 2 * j);
     table<T>().restrict_nodes(fine.row(2 * j - 1), fine.row(2 * j),
                               above + 1 < fine.rows ? &upper : nullptr, fine.columns, coarse, j);
+    if (!level.transfer) return;
+    for (int row = 2 * j - 1; row < std::min(2 * j + 2, fine.rows - 1); ++row)
+      add_restricted_nodes(*level.transfer, fine.row(row), row, coarse, j);
   });
+}
+
+/// Gauss–Seidel on the nodes of special cells: even rows, then odd ones.
+template <class T>
+void relax_near(const LevelSystem<T>& level) {
+  for (const int odd : {0, 1})
+    for (int j = 1 + odd; j + 1 < level.d.x.rows; j += 2)
+      relax_block_row<T>(level.membrane, level.f, level.d, j);
 }
 
 template <class T>
@@ -98,12 +114,15 @@ void apply_isotropic(const Membrane<T>& m, const Unknowns<const T>& d, const Unk
   const IsotropicRows<T>& rows = isotropic_rows(m);
   for_cell_rows(d.x.rows - 1, d.x.columns,
                 [&](bool first, int j) { rows.product(m, d, out, first, j); });
+  if (m.special)
+    for_nodes(d, d.x.columns, [&](int j) { overwrite_block_row(*m.special, d, out, j); });
 }
 
 template <class T>
 void isotropic_force(const Membrane<T>& m, const Unknowns<T>& f) {
   const IsotropicRows<T>& rows = isotropic_rows(m);
   for_cell_rows(f.x.rows - 1, f.x.columns, [&](bool first, int j) { rows.force(m, f, first, j); });
+  if (m.special) special_isotropic_force(m, f);
 }
 
 template <class T>
@@ -118,6 +137,8 @@ void relax_isotropic(const LevelSystem<T>& level, bool from_zero, const Unknowns
     for_nodes(d, d.x.columns, [&](int j) {
       table<T>().add_prolonged_nodes(coarse_d->x, d.x, j);
       table<T>().add_prolonged_nodes(coarse_d->y, d.y, j);
+      if (level.transfer)
+        finish_prolongation(*level.membrane.special, *level.transfer, *coarse_d, d, j);
     });
   // Roots of the second Chebyshev polynomial on [kDampedShare, 1]·largest.
   const double centre = 0.5 * (1.0 + kDampedShare), radius = 0.5 * (1.0 - kDampedShare);
@@ -125,10 +146,14 @@ void relax_isotropic(const LevelSystem<T>& level, bool from_zero, const Unknowns
     block_step(level, T(1.0 / (double(level.largest) * (centre + side * radius * std::sqrt(0.5)))));
   if (level.cuts.count > 0)
     for (const bool reverse : {false, true}) relax_curves(level, reverse);
+  if (level.membrane.special) relax_near(level);
   if (!coarse_f) return;
   residual(level);
-  restrict_residual<T>(level.product.x, coarse_f->x);
-  restrict_residual<T>(level.product.y, coarse_f->y);
+  restrict_residual<T>(level, level.product.x, coarse_f->x);
+  restrict_residual<T>(level, level.product.y, coarse_f->y);
+  if (level.coarse_special)
+    for (int j = 1; j + 1 < coarse_f->x.rows; ++j)
+      clear_without_equation(*level.coarse_special, *coarse_f, j);
 }
 
 template <class T>
@@ -143,8 +168,11 @@ void inverse_blocks(const Membrane<T>& m, const Plane<T> (&block)[3]) {
   const Plane<T>& xx = block[0];
   for_cell_rows(xx.rows - 1, xx.columns,
                 [&](bool first, int j) { rows.diagonal(m, block, first, j); });
-  for_rows(1, xx.rows - 1, xx.columns,
-           [&](int j) { isotropic_table<T>().invert_blocks(m.mu.value, block, j); });
+  for_rows(1, xx.rows - 1, xx.columns, [&](int j) {
+    if (m.special) overwrite_diagonal_row(*m.special, block, j);
+    isotropic_table<T>().invert_blocks(m.mu.value, block, j);
+    if (m.special) hold_known_row(*m.special, block, j);
+  });
 }
 
 template <class T>
@@ -172,7 +200,10 @@ void average_tangents(const Membrane<T>& m, const Plane<T>& coarse) {
         at += stride;
       }
     const bool pair = 2 * j + 1 < fine_rows;
-    for (int n = 0; n <= int(pair); ++n) rows.tangent(m, row[n], 2 * j + n);
+    for (int n = 0; n <= int(pair); ++n) {
+      rows.tangent(m, row[n], 2 * j + n);
+      if (m.special) overwrite_tangent_row(*m.special, row[n], 2 * j + n);
+    }
     for (int e = 0; e < kEntries; ++e) {
       const SplitRow<const T> below{{row[0][e].half[0], row[0][e].half[1]}},
           above{{row[1][e].half[0], row[1][e].half[1]}};
@@ -211,7 +242,8 @@ double largest_eigenvalue(const LevelSystem<T>& level, int steps) {
 }
 
 template <class T>
-void update_corner_pressure(const Membrane<T>& m, const Plane<T> (&shift)[4]) {
+void update_corner_pressure(const Membrane<T>& m, const Plane<T> (&shift)[4], T* listed) {
+  if (m.special) update_triangle_pressure(m, listed);
   for_rows(0, m.ux.rows - 1, m.ux.columns,
            [&](int j) { isotropic_table<T>().corner_pressure(m, shift, j); });
 }
@@ -226,7 +258,7 @@ void update_corner_pressure(const Membrane<T>& m, const Plane<T> (&shift)[4]) {
   template void inverse_blocks(const Membrane<T>&, const Plane<T>(&)[3]);                          \
   template void average_tangents(const Membrane<T>&, const Plane<T>&);                             \
   template double largest_eigenvalue(const LevelSystem<T>&, int);                                  \
-  template void update_corner_pressure(const Membrane<T>&, const Plane<T>(&)[4]);
+  template void update_corner_pressure(const Membrane<T>&, const Plane<T>(&)[4], T*);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)
 #undef DRUMHEAD_INSTANTIATE

@@ -189,6 +189,10 @@ struct EdgeSums {
   }
 };
 
+/// Upper triangle of a symmetric 4×4 tangent on (a₁, a₂, b₁, b₂) by rows: a₁a₁ a₁a₂ a₁b₁ a₁b₂ a₂a₂
+/// a₂b₁ a₂b₂ b₁b₁ b₁b₂ b₂b₂.
+constexpr int kTangentEntries = 10;
+
 /// The least eigenvalue of a density's Hessian that a clamp of this width leaves.
 template <class T, class Density, class B>
 B least_eigenvalue(const Parameters<B>& c, B width) {
@@ -198,15 +202,23 @@ B least_eigenvalue(const Parameters<B>& c, B width) {
     return (B(T(1)) - width) * c.mu;
 }
 
+template <class B>
+struct LeastEigenvalue {
+  B value;
+};
+
 /// The Hessian of one point's energy, its eigenvalues raised to the least one.
 template <class T, class B>
 struct Tangent {
   B a1, a2, b1, b2, aa, ab, bb, twist, flip;
   template <class Density>
-  Tangent(Density, const Split<B>& f, const Parameters<B>& c, B width) {
+  Tangent(Density density, const Split<B>& f, const Parameters<B>& c, B width)
+      : Tangent(density, f, c, LeastEigenvalue<B>{least_eigenvalue<T, Density>(c, width)}) {}
+  template <class Density>
+  Tangent(Density, const Split<B>& f, const Parameters<B>& c, LeastEigenvalue<B> least) {
     const Polar<T, Density, B> p(f);
     Moduli<B> m = Density::template at<T>(c, p.ra, p.rb);
-    raise_eigenvalues<T>(m, least_eigenvalue<T, Density>(c, width));
+    raise_eigenvalues<T>(m, least.value);
     a1 = p.a1, a2 = p.a2, b1 = p.b1, b2 = p.b2;
     aa = m.aa, ab = m.ab, bb = m.bb, twist = m.twist, flip = m.flip;
   }
@@ -219,6 +231,18 @@ struct Tangent {
     pa2 = a2 * pa + a1 * across_a;
     pb1 = b1 * pb - b2 * across_b;
     pb2 = b2 * pb + b1 * across_b;
+  }
+  void entries(B* out) const {
+    out[0] = aa * (a1 * a1) + twist * (a2 * a2);
+    out[1] = (aa - twist) * (a1 * a2);
+    out[2] = ab * (a1 * b1);
+    out[3] = ab * (a1 * b2);
+    out[4] = aa * (a2 * a2) + twist * (a1 * a1);
+    out[5] = ab * (a2 * b1);
+    out[6] = ab * (a2 * b2);
+    out[7] = bb * (b1 * b1) + flip * (b2 * b2);
+    out[8] = (bb - flip) * (b1 * b2);
+    out[9] = bb * (b2 * b2) + flip * (b1 * b1);
   }
 };
 

@@ -16,10 +16,11 @@ B centre_area(const CellState<T, B>& cell) {
 }
 
 /// Adds cell row j's energies (with mu; with kappa), the count of its inverted cells and its least
-/// J at the points to sums, at u + step d (d.x null: at u).
+/// J at the points to sums, at u + step d (d.x null: at u); cells of the columns `left_out` do not
+/// count.
 template <class Model, class T>
 [[gnu::flatten]] void isotropic_energy_row(const Membrane<T>& m, const Unknowns<const T>& d, T step,
-                                           EnergySums& sums, int j) {
+                                           const Columns& left_out, EnergySums& sums, int j) {
   constexpr int kChunk = 256;
   T shape[kChunk], volume[kChunk], inverted[kChunk], least[kChunk];
   Sixteen total[3];
@@ -51,6 +52,12 @@ template <class Model, class T>
         lane.store(if_less(centre_area<T>(cell), zero, one, zero), inverted + (k - begin));
         lane.store(smallest, least + (k - begin));
       });
+      for (const int i : left_out) {
+        const int k = i >> 1;
+        if ((i & 1) != parity || k < begin || k >= end) continue;
+        shape[k - begin] = volume[k - begin] = inverted[k - begin] = T(0);
+        least[k - begin] = T(1e30);
+      }
       total[0].add(shape, end - begin);
       total[1].add(volume, end - begin);
       total[2].add(inverted, end - begin);

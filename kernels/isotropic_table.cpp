@@ -5,14 +5,31 @@
 #include "averaged_body.h"
 #include "blocks_body.h"
 #include "isotropic_energy_body.h"
+#include "point_body.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
+/// None for a model whose conforming cells are not there (fold-free).
+template <class Density, class T>
+constexpr PointLaw<T> point_law() {
+  if constexpr (requires(Parameters<T> c) { Density::template at<T>(c, T(0), T(0)); })
+    return {point_stress<Density, T>, point_tangent<Density, T>};
+  else
+    return {};
+}
+
 template <class Model, class T>
 constexpr IsotropicRows<T> isotropic_rows() {
-  return {isotropic_product_row<Model, T>, isotropic_force_row<Model, T>,
-          isotropic_diagonal_row<Model, T>, cell_tangent_row<Model, T>,
-          isotropic_energy_row<Model, T>};
+  PointLaw<T> corner;
+  if constexpr (requires { typename Model::Corner; })
+    corner = point_law<typename Model::Corner, T>();
+  return {isotropic_product_row<Model, T>,
+          isotropic_force_row<Model, T>,
+          isotropic_diagonal_row<Model, T>,
+          cell_tangent_row<Model, T>,
+          isotropic_energy_row<Model, T>,
+          point_law<Model, T>(),
+          corner};
 }
 
 template <class T>
@@ -24,10 +41,12 @@ constexpr IsotropicTable<T> make_isotropic_table() {
       .linear = isotropic_rows<Linear, T>(),
       .neohookean = isotropic_rows<NeoHookean, T>(),
       .stvk = isotropic_rows<Stvk, T>(),
-      .averaged = {averaged_product_row<T>, nullptr, averaged_diagonal_row<T>, nullptr, nullptr},
+      .averaged =
+          {averaged_product_row<T>, nullptr, averaged_diagonal_row<T>, nullptr, nullptr, {}, {}},
       .block_step = block_step_row<T>,
       .invert_blocks = invert_blocks_row<T>,
       .corner_pressure = corner_pressure_row<T>,
+      .point_pressure = point_pressure<T>,
   };
 }
 

@@ -7,6 +7,25 @@
 
 namespace drumhead::kernels {
 
+/// F (by columns) and the parameters at one point.
+template <class T>
+struct PointState {
+  T f11, f21, f12, f22;
+  T mu, kappa, eps, shift, onset;
+};
+template <class T>
+struct PointStress {
+  T shape = T(0), volume = T(0);  ///< Ψ = the part with mu + the part with kappa
+  T p11 = T(0), p21 = T(0), p12 = T(0), p22 = T(0);  ///< ∂Ψ/∂F
+};
+/// A density at single points, for lists of them (point_body.h); null: there is none.
+template <class T>
+struct PointLaw {
+  PointStress<T> (*stress)(const PointState<T>&) = nullptr;
+  /// The ten entries of the tangent, its eigenvalues at least `floor`.
+  void (*tangent)(const PointState<T>&, T floor, T* entries) = nullptr;
+};
+
 /// One membrane (isotropic_body.h).
 template <class T>
 struct IsotropicRows {
@@ -16,7 +35,9 @@ struct IsotropicRows {
   void (*diagonal)(const Membrane<T>&, const Plane<T>* block, bool first, int j);
   /// Row j of the ten entries of the cells' mean tangent (averaged_body.h).
   void (*tangent)(const Membrane<T>&, const SplitRow<T>* out, int j);
-  void (*energy)(const Membrane<T>&, const Unknowns<const T>& d, T step, EnergySums&, int j);
+  void (*energy)(const Membrane<T>&, const Unknowns<const T>& d, T step, const Columns& left_out,
+                 EnergySums&, int j);
+  PointLaw<T> point, corner;
 };
 
 template <class T>
@@ -27,6 +48,7 @@ struct IsotropicTable {
                      const Unknowns<const T>& product, const Unknowns<T>& d, int j);
   void (*invert_blocks)(T mu, const Plane<T>* block, int j);
   void (*corner_pressure)(const Membrane<T>&, const Plane<T>* shift, int j);
+  T (*point_pressure)(const PointState<T>&);
 };
 
 /// The table of the instruction set in use.

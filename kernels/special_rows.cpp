@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/special.h>
 
+#include <drumhead/kernels/model.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -69,7 +71,10 @@ SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& mem
   list_near_nodes(membrane.ux.columns, membrane.ux.rows);
   add_stiffness(membrane);
   list_visits();
-  list_couplings();
+  if (isotropic(membrane.law.model))
+    list_fringe(membrane.ux.rows);
+  else
+    list_couplings();
   soft_ = SoftRows<T>(*this, membrane);
 }
 
@@ -310,6 +315,7 @@ void SpecialRows<T>::set_steps(const Membrane<T>& m) {
 template <class T>
 void SpecialRows<T>::linearise(const Membrane<T>& m) {
   if (!cells_) return;
+  if (isotropic(m.law.model)) return linearise_isotropic(m);
   linearise_regular(m);
   soft_.linearise(*this, m);
   if (!m.pressure) return;
@@ -328,7 +334,9 @@ std::size_t SpecialRows<T>::bytes() const {
     indices += list->size();
   return indices * sizeof(int) + near_.size() * sizeof(NearRow<T>) +
          visit_.size() * sizeof(CellVisit<T>) + part_.size() * sizeof(PartRow<T>) +
-         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>) + soft_.bytes();
+         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>) +
+         block_.size() * sizeof(BlockRow<T>) + fringe_.size() * sizeof(FringeCell) +
+         tangent_.size() * sizeof(T) + soft_.bytes();
 }
 
 template class SpecialRows<float>;

@@ -194,7 +194,7 @@ std::size_t ConformingLevel<T>::bytes() const {
          cells.vertex.size() * sizeof(kernels::PartVertex<T>) +
          to_coarse.pair.size() * sizeof(typename kernels::SpecialTransfer<T>::Pair) +
          to_coarse.node.size() * sizeof(typename kernels::SpecialTransfer<T>::Node) +
-         4 * pressure.size() * sizeof(T);
+         (4 * pressure.size() + shift.size()) * sizeof(T);
 }
 
 template <class T>
@@ -238,13 +238,40 @@ void set_part_means(const ConformingLevel<T>& level, const kernels::Plane<T>& pr
   });
 }
 
+template <class T>
+void set_shift_means(const ConformingLevel<T>& level, grid::Field<T> (&shift)[4]) {
+  const kernels::SpecialCells<T>& cells = level.cells;
+  for_special(level.geometry, [&](int c, int i, int j) {
+    T sum = T(0), area = T(0);
+    for (int t = cells.triangle_begin[std::size_t(c)]; t < cells.triangle_begin[std::size_t(c) + 1];
+         ++t) {
+      sum += cells.triangle[std::size_t(t)].area * level.shift[std::size_t(t)];
+      area += cells.triangle[std::size_t(t)].area;
+    }
+    for (grid::Field<T>& plane : shift) plane.view().at(i, j) = sum / area;
+  });
+}
+
+template <class T>
+void set_shifts(const grid::Field<T> (&shift)[4], ConformingLevel<T>& level) {
+  const kernels::SpecialCells<T>& cells = level.cells;
+  for_special(level.geometry, [&](int c, int i, int j) {
+    T sum = T(0);
+    for (const grid::Field<T>& plane : shift) sum += plane.view().at(i, j);
+    std::fill(level.shift.begin() + cells.triangle_begin[std::size_t(c)],
+              level.shift.begin() + cells.triangle_begin[std::size_t(c) + 1], T(0.25) * sum);
+  });
+}
+
 #define DRUMHEAD_INSTANTIATE(T)                                                      \
   template struct ConformingLevel<T>;                                                \
   template void set_held(const ConformingLevel<T>&, const kernels::Plane<T>&,        \
                          const kernels::Plane<T>&);                                  \
   template void move_held(ConformingLevel<T>&, const kernels::Unknowns<const T>&, T, \
                           const kernels::Plane<T>&, const kernels::Plane<T>&);       \
-  template void set_part_means(const ConformingLevel<T>&, const kernels::Plane<T>&);
+  template void set_part_means(const ConformingLevel<T>&, const kernels::Plane<T>&); \
+  template void set_shift_means(const ConformingLevel<T>&, grid::Field<T>(&)[4]);    \
+  template void set_shifts(const grid::Field<T>(&)[4], ConformingLevel<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)
 #undef DRUMHEAD_INSTANTIATE

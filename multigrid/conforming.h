@@ -24,6 +24,7 @@ struct ConformingLevel {
   kernels::SpecialRows<T> rows;
   kernels::SpecialTransfer<T> to_coarse;  ///< empty on the coarsest level
   std::vector<T> pressure;                ///< state: P per part
+  std::vector<T> shift;                   ///< state: Law::listed_shift, empty: none
   Regions regions;                        ///< whose mean pressures cycles set
 
   /// `spacing`: side of a cell of the level in finest cells.
@@ -62,6 +63,13 @@ void transfer_soft(const ConformingLevel<T>& from, const kernels::Plane<const T>
 /// The plane at special cells takes the mean of their parts.
 template <class T>
 void set_part_means(const ConformingLevel<T>& level, const kernels::Plane<T>& pressure);
+
+/// Shifts of arap's corners: the planes at special cells take the means of their triangles,
+template <class T>
+void set_shift_means(const ConformingLevel<T>& level, grid::Field<T> (&shift)[4]);
+/// and fine triangles what the planes have at the corners of their cell.
+template <class T>
+void set_shifts(const grid::Field<T> (&shift)[4], ConformingLevel<T>& level);
 
 /// Pressures of coarse parts: mean over the fine parts and cells they cover, weighted by area.
 /// `area`: of a fine regular cell.

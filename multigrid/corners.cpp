@@ -40,6 +40,8 @@ void Corners<T>::soften(double relief) {
   law.relief = T(relief);
   for (grid::Field<T>& shift : level_.solid.shift)
     kernels::combine<T>(T(0), kernels::Plane<const T>(shift.view()), scale, shift.view());
+  if (level_.conforming)
+    for (T& shift : level_.conforming->shift) shift *= scale;
 }
 
 template <class T>
@@ -50,7 +52,8 @@ void Corners<T>::move() {
     soften(std::min(kMostRelief, kGrows * double(law.relief)));
   else if (unfolded())
     kernels::update_corner_pressure<T>(
-        level_.membrane(), {shift[0].view(), shift[1].view(), shift[2].view(), shift[3].view()});
+        level_.membrane(), {shift[0].view(), shift[1].view(), shift[2].view(), shift[3].view()},
+        level_.conforming ? level_.conforming->shift.data() : nullptr);
   else if (law.corner > T(0))
     soften(std::min(kLastRelief, kGrows * double(law.relief)));
   law.onset = T(std::max(onset_, kNarrows * double(law.onset)));

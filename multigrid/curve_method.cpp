@@ -13,6 +13,18 @@ constexpr std::array kNames{std::pair{CurveMethod::automatic, "auto"},
                             std::pair{CurveMethod::averaged, "averaged"},
                             std::pair{CurveMethod::conforming, "conforming"}};
 
+// Isotropic membranes: kappa from which Newton's method on conforming cells often ends elsewhere
+// than in a solution (Eq. 8 as an inequality leaves one folded triangle of ML on 96²).
+constexpr double kMostStiffness = 300.0;
+
+/// Where conforming cells are expected to converge. Not with stvk: what its cells do after their
+/// collapse takes more Newton steps than there are (S1 and S4, kappa 1, 128²).
+bool settles(const grid::Material& material) {
+  if (!kernels::isotropic(material.model)) return true;
+  return material.model != kernels::Model::stvk &&
+         grid::largest_stiffness(material) <= kMostStiffness;
+}
+
 }  // namespace
 
 const char* name(CurveMethod method) {
@@ -28,9 +40,13 @@ std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
 
 std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& options) {
   const kernels::Model model = problem.material.model;
-  if (kernels::isotropic(model))
+  if (model == kernels::Model::fold_free)
     return "curve method conforming: must be averaged for model " +
-           std::string(kernels::name(model)) + "; conforming curves need crpm or harmonic";
+           std::string(kernels::name(model));
+  for (const grid::CurvePair& curve : problem.curves)
+    if (kernels::isotropic(model) && !std::isinf(curve.weight))
+      return "curve '" + curve.name + "': weight = " + std::to_string(curve.weight) +
+             ": must be inf with conforming curves and model " + std::string(kernels::name(model));
   if (options.exact) return "exact rows belong to averaged curves, not to conforming ones";
   if (options.solver != Solver::gcr)
     return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";
@@ -45,7 +61,8 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     return CurveMethod::conforming;
   }
   const auto soft = [](const grid::CurvePair& curve) { return !std::isinf(curve.weight); };
-  if (!why_not.empty() || std::ranges::any_of(problem.curves, soft)) return CurveMethod::averaged;
+  if (!why_not.empty() || !settles(problem.material) || std::ranges::any_of(problem.curves, soft))
+    return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

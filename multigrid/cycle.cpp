@@ -39,16 +39,24 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
     hierarchy[l].clamp_width = clamp_width_;
     hierarchy[l].pressure_jump = T(kPressureJump / hierarchy.traits().stiffest);
   }
-  for (int l = top; l < hierarchy.size() && hierarchy.conforming(); ++l) {
-    hierarchy[l].conforming->rows.linearise(system(l).membrane);
-    if (pressure) hierarchy[l].conforming->regions.prepare(hierarchy[l].membrane());
+  if (pressure && kernels::isotropic(hierarchy.traits().model)) {
+    prepare_relaxation();
+  } else {
+    for (int l = top; l < hierarchy.size(); ++l) linearise_special(l);
   }
-  if (pressure && kernels::isotropic(hierarchy.traits().model)) prepare_relaxation();
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
   relaxes_band_ = pressure && !kernels::isotropic(hierarchy.traits().model) &&
                   hierarchy.traits().stiffness >= kStiff && hierarchy[top].cuts.size() > 0;
   curves_again_ = hierarchy.traits().stiffness >= kStiff;
+}
+
+template <class T>
+void Cycle<T>::linearise_special(int l) {
+  Level<T>& level = hierarchy_[l];
+  if (!level.conforming) return;
+  level.conforming->rows.linearise(system(l).membrane);
+  if (has_regions(level)) level.conforming->regions.prepare(level.membrane());
 }
 
 /// Diagonal blocks of all levels, and the bound of their relaxations: from the coarser levels,
@@ -57,6 +65,7 @@ template <class T>
 void Cycle<T>::prepare_relaxation() {
   double largest = 0.0;
   for (int l = top_; l + 1 < hierarchy_.size(); ++l) {
+    linearise_special(l);
     Solid<T>&solid = hierarchy_[l].solid, &coarse = hierarchy_[l + 1].solid;
     const kernels::LevelSystem<T> s = system(l);
     kernels::inverse_blocks<T>(
@@ -65,6 +74,7 @@ void Cycle<T>::prepare_relaxation() {
     if (l > top_)
       largest = std::max(largest, kPowerMargin * kernels::largest_eigenvalue(s, kPowerSteps));
   }
+  linearise_special(hierarchy_.size() - 1);
   for (int l = top_; l < hierarchy_.size(); ++l)
     hierarchy_[l].solid.largest = largest > 0.0 ? T(largest) : T(2);
 }
@@ -112,7 +122,7 @@ template <class T>
 void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
   Level<T>& level = hierarchy_[l];
   if (from_zero) std::ranges::fill(level.dq, T(0));
-  Regions* regions = pressure_ && level.conforming ? &level.conforming->regions : nullptr;
+  Regions* regions = has_regions(level) ? &level.conforming->regions : nullptr;
   if (regions && l == top_) regions->keep_sums(level.f.view());
   if (regions && l > top_ && from_zero) regions->remove_sums(level.membrane(), level.f.view());
   if (l + 1 == hierarchy_.size()) {

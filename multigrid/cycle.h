@@ -49,6 +49,10 @@ class Cycle {
   void relax_down(int l, bool from_zero);
   void relax_up(int l);
   void prepare_relaxation();
+  void linearise_special(int l);
+  bool has_regions(const Level<T>& level) const {
+    return pressure_ && level.pressure && level.conforming;
+  }
   void restrict_cuts(int l);
   void prolong_cuts(int l);
 

@@ -26,8 +26,6 @@ constexpr double kRelief = 10.0;
 // fold-free: of a corner below eps, in the end. With 1e6 pressures take longer to settle (S2, kappa
 // 1, 200²: at corners that have not, the energy of what is left is 5 % of the whole).
 constexpr double kCornerStiffness = 1e4;
-// neohookean: the J below which ln J is a parabola at first; Newton lowers it.
-constexpr double kFirstFloor = 0.1;
 
 // Every part has a pressure of its own.
 constexpr grid::ConformOptions kConform{.least_area = 0.0};
@@ -192,7 +190,7 @@ void Hierarchy<T>::restrict_state(int top) {
 template <class T>
 void Hierarchy<T>::prolong_state(int l) {
   Level<T>& fine = (*this)[l];
-  const Level<T>& coarse = (*this)[l + 1];
+  Level<T>& coarse = (*this)[l + 1];
   kernels::prolong_nodes<T>(coarse.ux.view(), fine.ux.view());
   kernels::prolong_nodes<T>(coarse.uy.view(), fine.uy.view());
   if (fine.pressure) kernels::interpolate_cells<T>(coarse.pressure.view(), fine.pressure.view());
@@ -208,9 +206,12 @@ void Hierarchy<T>::prolong_state(int l) {
     if (fine.pressure) set_part_means<T>(*fine.conforming, fine.pressure.view());
   }
   fine.solid.law = coarse.solid.law;
+  const bool listed = coarse.conforming && !coarse.conforming->shift.empty();
+  if (listed) set_shift_means<T>(*coarse.conforming, coarse.solid.shift);
   for (std::size_t n = 0; n < 4; ++n)
     if (fine.solid.shift[n])
       kernels::interpolate_cells<T>(coarse.solid.shift[n].view(), fine.solid.shift[n].view());
+  if (listed) set_shifts<T>(fine.solid.shift, *fine.conforming);
   for (std::size_t k = 0; k < fine.to_coarse.parent.size(); ++k) {
     const int parent = fine.to_coarse.parent[k];
     for (std::size_t c = 0; c < 2; ++c)

@@ -120,6 +120,7 @@ kernels::Membrane<T> Level<T>::membrane() const {
   m.clamp_width = clamp_width;
   m.pressure_jump = pressure_jump;
   if (kernels::isotropic(solid.law.model)) solid.view(m);
+  if (conforming && !conforming->shift.empty()) m.law.listed_shift = conforming->shift.data();
   return m;
 }
 
@@ -141,11 +142,12 @@ kernels::Membrane<T> Level<T>::harmonic() const {
 template <class T>
 void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   conforming = std::make_unique<ConformingLevel<T>>(std::move(cells), spacing);
-  conforming->rows = kernels::SpecialRows<T>(conforming->cells, harmonic());
-  d.listed.assign(conforming->pressure.size(), T(0));
+  conforming->rows = kernels::SpecialRows<T>(conforming->cells, membrane());
+  d.listed.assign(pressure ? conforming->pressure.size() : 0, T(0));
   d.curve.assign(conforming->curve_unknowns(), T(0));
   f.listed = d.listed;
   f.curve = d.curve;
+  if (solid.law.relief > T(0)) conforming->shift.assign(conforming->cells.triangle.size(), T(0));
   set_held<T>(*conforming, ux.view(), uy.view());
   meter.add(conforming->bytes());
 }

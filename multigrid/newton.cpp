@@ -226,6 +226,15 @@ void Newton<T>::update(double step, bool pressure) {
   for (std::size_t k = 0; k < level_.q.size(); ++k) level_.q[k] += T(step) * level_.dq[k];
 }
 
+/// A start with folds that the floor of a coarser level would not let go of: as at first.
+template <class T>
+void Newton<T>::raise_floor() {
+  kernels::Law<T>& law = level_.solid.law;
+  if (law.model != kernels::Model::neohookean || !(double(law.eps) < kFirstFloor)) return;
+  if (kernels::energy<T>(level_.membrane(), {}, T(0)).least_J < double(law.eps))
+    law.eps = T(kFirstFloor);
+}
+
 /// neohookean: true if the law had to be brought closer to the logarithm than it was for the state.
 template <class T>
 bool Newton<T>::lower_floor() {
@@ -325,6 +334,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     report.status = status;
     return report;
   };
+  raise_floor();
   norm_ = force_norm(level_.nonlinear());
   corners.moved_to(norm_);
   for (int n = 0; n < options.most_steps; ++n) {

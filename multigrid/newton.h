@@ -97,6 +97,7 @@ class Newton {
   double take_area_step(double gap, double enough);
   int inverted_cells() const;
   void update(double step, bool pressure);
+  void raise_floor();
   bool lower_floor();
   void adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
              double norm_before) const;

@@ -7,6 +7,9 @@
 
 namespace drumhead::multigrid {
 
+/// neohookean: the J below which ln J is a parabola at first; Newton lowers it.
+inline constexpr double kFirstFloor = 0.1;
+
 template <class T>
 struct Solid {
   kernels::Law<T> law;  ///< its views are filled by `view`

@@ -108,9 +108,6 @@ TEST_F(DriverCommand, RefusesMembranesOutsideTheirDomain) {
                  {"eps: only the models arap and fold-free have one"});
   expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "rubber"},
                  {"--model rubber: must be one of: crpm, harmonic, arap"});
-  expect_refused({"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "stvk",
-                  "--curve-method", "conforming"},
-                 {"curve method conforming: must be averaged for model stvk", "crpm or harmonic"});
   expect_refused(
       {"warp", "photo.png", "curves.svg", "-o", "out.png", "--model", "stvk", "--solver", "minres"},
       {"solver minres: must be gcr for model stvk"});

@@ -294,5 +294,21 @@ TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {
   EXPECT_NE(bent, warped);
 }
 
+TEST_F(DriverWarp, EveryMembraneTakesConformingCells) {
+  draw_shift(6);
+  for (const std::string model : {"arap", "corotated", "linear", "neohookean", "stvk"}) {
+    EXPECT_EQ(run_drumhead(scratch,
+                           {"warp", "photo.png", "curves.svg", "--cells", "32", "--model", model,
+                            "--curve-method", "conforming", "-o", "out.png", "--report", "r.json"})
+                  .exit_code,
+              0)
+        << model;
+    const Json report = Json::parse(read_text(scratch / "r.json"));
+    EXPECT_EQ(report["model"], model);
+    EXPECT_EQ(report["curve_method"], "conforming");
+    EXPECT_EQ(report["status"], "converged") << model;
+  }
+}
+
 }  // namespace
 }  // namespace drumhead::driver

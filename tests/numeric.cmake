@@ -49,6 +49,20 @@ drumhead_test(NAME multigrid_warp_test
   SOURCES multigrid_warp_test.cpp support/scene_problem.cpp
   LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 
+add_library(drumhead_conforming_solid_oracle STATIC
+  support/oracle_conforming_solid.cpp support/oracle_membrane.cpp)
+drumhead_compile_settings(drumhead_conforming_solid_oracle)
+target_compile_options(drumhead_conforming_solid_oracle PRIVATE -O2)
+target_link_libraries(drumhead_conforming_solid_oracle PUBLIC drumhead_conforming_oracle)
+drumhead_test(NAME multigrid_conforming_membranes_test
+  SOURCES multigrid_conforming_membranes_test.cpp
+  LINK drumhead_conforming_solid_oracle LABEL unit)
+target_include_directories(multigrid_conforming_membranes_test
+  PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
+drumhead_test(NAME stability_conforming_membranes_test
+  SOURCES stability_conforming_membranes_test.cpp
+  LINK drumhead_conforming_solid_oracle LABEL numeric)
+
 # It looks inside: the cycle is not part of the public headers.
 drumhead_test(NAME multigrid_allocation_test
   SOURCES multigrid_allocation_test.cpp support/scene_problem.cpp

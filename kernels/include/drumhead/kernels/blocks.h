@@ -21,8 +21,10 @@ template <class T>
 double largest_eigenvalue(const LevelSystem<T>& level, int steps);
 
 /// shift := min(0, J − eps + shift) w/(w + c) at every corner, c = law.relief, w its stiffness: one
-/// step of the method of multipliers (model_arap.h). shift are the planes that membrane.law views.
+/// step of the method of multipliers (model_arap.h). shift are the planes that membrane.law views;
+/// `listed` are the values of the triangles of special cells, if there are any.
 template <class T>
-void update_corner_pressure(const Membrane<T>& membrane, const Plane<T> (&shift)[4]);
+void update_corner_pressure(const Membrane<T>& membrane, const Plane<T> (&shift)[4],
+                            T* listed = nullptr);
 
 }  // namespace drumhead::kernels

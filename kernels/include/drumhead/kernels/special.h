@@ -15,6 +15,10 @@
 // relaxation: restored) by loops over the lists of this header, which hold whole rows of the
 // operator. A plane's value at a special cell is therefore not part of any system; corrections keep
 // 0 there.
+//
+// Isotropic membranes (model.h) have no pressures: their part with mu is taken at F of every
+// triangle, that with kappa at the mean F of every part (arap's one-sided one, too, at every
+// triangle, whose J it keeps above eps), and the rows of near nodes have 2×2 blocks.
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -110,6 +114,17 @@ struct NearRow {
   T g[kStencilPlaces - 1] = {};
   T bx[4] = {}, by[4] = {};
 };
+/// The same of isotropic membranes: (H d)_x = xx·d_x + xy·d_y, (H d)_y = yx·d_x + yy·d_y.
+template <class T>
+struct BlockRow {
+  T xx[9] = {}, xy[9] = {}, yx[9] = {}, yy[9] = {};
+};
+/// A regular cell with an unknown near node; `near`: numbers of those at its corners 00, 10, 01,
+/// 11, −1: none.
+struct FringeCell {
+  int column = 0, row = 0;
+  int near[4] = {-1, -1, -1, -1};
+};
 template <class T>
 struct PartCoupling {
   int part = 0;
@@ -171,6 +186,11 @@ class SpecialRows {
   const SoftRows<T>* soft() const { return soft_.size() > 0 ? &soft_ : nullptr; }
   /// Near node at corner c of special cell n; −1: known or on the fixed boundary.
   int unknown_corner(int n, int c) const { return corner_[4 * std::size_t(n) + std::size_t(c)]; }
+  // Of isotropic membranes.
+  const BlockRow<T>& block(int n) const { return block_[std::size_t(n)]; }
+  const std::vector<FringeCell>& fringe() const { return fringe_; }
+  /// Mean tangent of special cell n: ten entries (Membrane::tangent).
+  const T* tangent(int n) const { return &tangent_[10 * std::size_t(n)]; }
   std::size_t bytes() const;
 
  private:
@@ -178,6 +198,8 @@ class SpecialRows {
     return {list.data() + begin[std::size_t(row)], list.data() + begin[std::size_t(row) + 1]};
   }
   void list_near_nodes(int columns, int rows);
+  void list_fringe(int rows);
+  void linearise_isotropic(const Membrane<T>& membrane);
   void list_couplings();
   void list_visits();
   void add_stiffness(const Membrane<T>& membrane);
@@ -195,6 +217,9 @@ class SpecialRows {
   std::vector<PartRow<T>> part_;
   std::vector<T> jump_;
   std::vector<PartCoupling<T>> coupling_;
+  std::vector<BlockRow<T>> block_;
+  std::vector<FringeCell> fringe_;
+  std::vector<T> tangent_;
   bool has_jumps_ = false;
   SoftRows<T> soft_;
 };

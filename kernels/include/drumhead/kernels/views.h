@@ -98,6 +98,7 @@ struct Law {
   /// 01, 11 of a cell; null: none (isotropic.h).
   Plane<const T> shift[4];
   T relief = T(0);
+  const T* listed_shift = nullptr;  ///< the same, one per triangle of special cells; null: none
   /// It begins gradually, from this far above eps to as far below (at least 1e-6).
   T onset = T(0);
 };

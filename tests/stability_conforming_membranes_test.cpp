@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Every membrane on conforming cells by the whole solver: it converges, its lattice is that of a
+// direct Newton's method on the assembled oracle, it is of second order, and Eq. 8 as an inequality
+// leaves no folds.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include <drumhead/kernels/model.h>
+
+#include "support/oracle_conforming_solid.h"
+#include "support/scene_problem.h"
+
+namespace drumhead {
+namespace {
+
+using kernels::Model;
+
+struct Case {
+  const char* name;
+  scenes::Scene scene;
+  Model model;
+  double kappa = 1.0;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+multigrid::Solution solved(const Case& c, int n, double tolerance_cells) {
+  multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
+  problem.material.model = c.model;
+  return multigrid::solve(problem, {.curve_method = multigrid::CurveMethod::conforming,
+                                    .tolerance_px = tolerance_cells / n});
+}
+
+const scenes::Scene s1 = scenes::sponge(scenes::kStudyOffset),
+                    s2 = scenes::roundabout(45.0, scenes::kStudyOffset),
+                    s4 = scenes::shift(scenes::kStudyOffset);
+
+std::vector<Case> cases() {
+  return {{"S1corotated", s1, Model::corotated},
+          {"S2corotated", s2, Model::corotated},
+          {"S4corotated", s4, Model::corotated},
+          {"S1linear", s1, Model::linear},
+          {"S2linear", s2, Model::linear},
+          {"S4linear", s4, Model::linear},
+          {"S1neohookean", s1, Model::neohookean},
+          {"S2neohookean", s2, Model::neohookean},
+          {"S4neohookean", s4, Model::neohookean},
+          {"S1arap", s1, Model::arap},
+          {"S2arap", s2, Model::arap},
+          {"S4arap", s4, Model::arap},
+          {"S2stvk", s2, Model::stvk},
+          {"S1eq8", s1, Model::arap, 1e4},
+          {"S2eq8", s2, Model::arap, 1e4},
+          {"S4eq8", s4, Model::arap, 1e4}};
+}
+
+class ConformingMembrane : public testing::TestWithParam<Case> {};
+
+TEST_P(ConformingMembrane, Converges) {
+  const Case& c = GetParam();
+  const multigrid::Solution solution = solved(c, 128, 0.0);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  EXPECT_EQ(solution.report.model, c.model);
+  EXPECT_TRUE(solution.pressure.empty());
+  EXPECT_LT(solution.report.curves[0].gap_max_px, 5e-4);
+  if (c.kappa >= 1e3) {
+    EXPECT_EQ(solution.report.folds.folded_cells, 0);
+  }
+}
+
+class DirectConformingMembrane : public testing::TestWithParam<Case> {};
+
+/// corotated, which does not resist collapse, folds 35 cells of S4 on 48² and then creeps: 1.8e-5
+/// cells off after all the steps there are.
+std::vector<Case> direct_cases() {
+  std::vector<Case> all = cases();
+  std::erase_if(all, [](const Case& c) { return std::string(c.name) == "S4corotated"; });
+  return all;
+}
+
+TEST_P(DirectConformingMembrane, HasTheLatticeOfADirectNewtonsMethod) {
+  const Case& c = GetParam();
+  const int n = 48;
+  const multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
+  const oracle::ConformingMembrane m =
+      oracle::conforming_membrane(problem.curves, problem.lattice,
+                                  scenes::kappa_cells(c.scene, n, c.kappa), {.least_area = 0.0});
+  const multigrid::Solution solution = solved(c, n, 1e-8);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged)
+      << multigrid::name(solution.report.status);
+  oracle::Positions x = m.target;
+  auto for_unknown = [&](auto&& visit) {
+    for (int k = 0; k < (n + 1) * (n + 1); ++k)
+      if (m.unknown[std::size_t(k)] >= 0)
+        visit(k, Eigen::RowVector2d(solution.u_px[std::size_t(k)] * n + k % (n + 1),
+                                    solution.v_px[std::size_t(k)] * n + k / (n + 1)));
+  };
+  for_unknown([&](int k, const Eigen::RowVector2d& at) { x.row(k) = at; });
+  const oracle::Positions direct = oracle::newton(m, {std::string(name(c.model)), c.kappa}, x, 8);
+  double worst = 0.0;
+  for_unknown([&](int k, const Eigen::RowVector2d& at) {
+    worst = std::max(worst, (direct.row(k) - at).norm());
+  });
+  EXPECT_LT(worst, 1e-6) << "cells";
+}
+
+const auto case_name = [](const auto& info) { return info.param.name; };
+INSTANTIATE_TEST_SUITE_P(Scenes, ConformingMembrane, testing::ValuesIn(cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, DirectConformingMembrane, testing::ValuesIn(direct_cases()),
+                         case_name);
+
+TEST(ConformingMembranes, MasksOfOneValueChangeNothing) {
+  multigrid::WarpProblem problem = scenes::problem(s2, 48, 3.0);
+  problem.material.model = Model::neohookean;
+  const multigrid::SolverOptions options{.curve_method = multigrid::CurveMethod::conforming};
+  const multigrid::Solution plain = multigrid::solve(problem, options);
+  problem.material.mu_cells.assign(48 * 48, 1.0F);
+  problem.material.kappa_cells.assign(48 * 48, 3.0F);
+  const multigrid::Solution masked = multigrid::solve(problem, options);
+  EXPECT_EQ(plain.u_px, masked.u_px);
+}
+
+TEST(ConformingMembranes, GoOnFromTheirOwnSolution) {
+  multigrid::WarpProblem problem = scenes::problem(s2, 64, 1.0);
+  problem.material.model = Model::neohookean;
+  multigrid::SolverOptions options;  // automatic
+  const multigrid::Solution first = multigrid::solve(problem, options);
+  EXPECT_EQ(first.report.curve_method, multigrid::CurveMethod::conforming);
+  options.start = &first;
+  const multigrid::Solution again = multigrid::solve(problem, options);
+  EXPECT_EQ(again.report.status, multigrid::Status::converged);
+  EXPECT_EQ(again.report.curve_method, multigrid::CurveMethod::conforming);
+  ASSERT_EQ(again.report.levels.size(), 1u);
+  EXPECT_LE(again.report.levels[0].newton.size(), 2u);
+}
+
+TEST(ConformingMembranes, AutomaticLeavesThoseThatDoNotSettleToAveragedRows) {
+  multigrid::WarpProblem problem = scenes::problem(s2, 32, 1.0);
+  problem.material.model = Model::stvk;
+  EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::averaged);
+  problem.material.model = Model::arap;
+  EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::conforming);
+  problem.material.kappa = 1e4;
+  EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::averaged);
+}
+
+/// RMS distance from a solution on a lattice four times as fine, in units of the side.
+double error(const Case& c, int n, const multigrid::Solution& fine) {
+  const multigrid::Solution solution = solved(c, n, 1e-3);
+  EXPECT_EQ(solution.report.status, multigrid::Status::converged);
+  const int m = fine.lattice.nx, ratio = m / n;
+  double sum = 0.0;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const std::size_t a = std::size_t(j * (n + 1) + i),
+                        b = std::size_t(ratio * j * (m + 1) + ratio * i);
+      sum += std::pow(solution.u_px[a] - fine.u_px[b], 2) +
+             std::pow(solution.v_px[a] - fine.v_px[b], 2);
+    }
+  return std::sqrt(sum) / (n + 1);
+}
+
+/// Stiff and one-sided laws reach the order later: neohookean at kappa 10 from 64² to 256² 1.70,
+/// 2.15, against 512².
+TEST(ConformingMembranes, AreOfSecondOrder) {
+  struct Bound {
+    Model model;
+    double kappa, order, error;
+  };
+  for (const auto& [model, kappa, order, most] :
+       {Bound{Model::corotated, 1.0, 1.9, 4e-5}, Bound{Model::corotated, 10.0, 1.9, 5.5e-5},
+        Bound{Model::neohookean, 1.0, 1.9, 1.2e-4}, Bound{Model::neohookean, 10.0, 1.5, 3e-4},
+        Bound{Model::arap, 1.0, 1.8, 5e-5}, Bound{Model::arap, 10.0, 1.5, 1e-4}}) {
+    const Case c{"", s2, model, kappa};
+    const multigrid::Solution fine = solved(c, 256, 1e-3);
+    const double e32 = error(c, 32, fine), e64 = error(c, 64, fine);
+    std::printf("%s, kappa %g: RMS error %.2e %.2e of the side\n", name(model).data(), kappa, e32,
+                e64);
+    EXPECT_GT(std::log2(e32 / e64), order);
+    EXPECT_LT(e64, most);
+  }
+}
+
+class ConformingFoldFree : public testing::TestWithParam<double> {};
+
+TEST_P(ConformingFoldFree, ManyDiscsAndTurningDiscs) {
+  for (const scenes::Scene& scene : {scenes::many_discs(), scenes::turning_discs()}) {
+    const multigrid::Solution solution = solved({"", scene, Model::arap, GetParam()}, 48, 0.0);
+    EXPECT_EQ(solution.report.status, multigrid::Status::converged) << scene.name;
+    EXPECT_EQ(solution.report.folds.folded_cells, 0) << scene.name;
+    EXPECT_GT(solution.report.folds.min_corner_J, 0.0) << scene.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arap, ConformingFoldFree, testing::Values(1e3, 1e4, 1e6));
+
+}  // namespace
+}  // namespace drumhead
