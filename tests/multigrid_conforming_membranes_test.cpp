@@ -29,7 +29,8 @@ constexpr double kKappa = 3.0, kNoClamp = 1e30;
 std::vector<Model> models() {
   std::vector<Model> all;
   for (const kernels::ModelInfo& info : kernels::kModels)
-    if (kernels::isotropic(info.model)) all.push_back(info.model);
+    // fold-free takes averaged curves only.
+    if (kernels::isotropic(info.model) && info.model != Model::fold_free) all.push_back(info.model);
   return all;
 }
 

@@ -99,7 +99,7 @@ CurveMethod taken(const multigrid::WarpProblem& problem, multigrid::SolverOption
   return multigrid::solve(problem, options).report.curve_method;
 }
 
-TEST(AutomaticCurves, AreConformingForHardCurvesOfUsualMembranesAndAveragedElse) {
+TEST(AutomaticCurves, AreConformingForHardCurvesWhereTheyConvergeAndAveragedElse) {
   const multigrid::WarpProblem usual = scenes::problem(scenes::shift(), 32, 10.0);
   EXPECT_EQ(taken(usual), CurveMethod::conforming);
   EXPECT_EQ(taken(usual, {.exact = true}), CurveMethod::averaged);
@@ -107,7 +107,14 @@ TEST(AutomaticCurves, AreConformingForHardCurvesOfUsualMembranesAndAveragedElse)
   EXPECT_EQ(taken(scenes::problem(scenes::shift(), 32, 1e4)), CurveMethod::conforming);
   multigrid::WarpProblem other = usual;
   other.material.model = kernels::Model::arap;
+  EXPECT_EQ(taken(other), CurveMethod::conforming);
+  other.material.kappa = 1e3;  // Eq. 8 as an inequality
   EXPECT_EQ(taken(other), CurveMethod::averaged);
+  for (const kernels::Model model : {kernels::Model::stvk, kernels::Model::fold_free}) {
+    other = usual;
+    other.material.model = model;
+    EXPECT_EQ(taken(other), CurveMethod::averaged) << kernels::name(model);
+  }
   other = usual;
   other.curves.front().weight = 100.0;
   EXPECT_EQ(taken(other), CurveMethod::averaged);
