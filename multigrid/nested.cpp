@@ -225,6 +225,13 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
   }
 }
 
+void note_rounding(SolveReport& report) {
+  report.notes.push_back("single precision: nodes settle to " +
+                         std::to_string(report.algebraic_rms_px) +
+                         " px RMS, more than a tenth of the discretisation error; a tolerance "
+                         "below that is solved in double precision");
+}
+
 }  // namespace
 
 void forget_errors(SolveReport& report) {
@@ -291,11 +298,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     if (ended_early(report.status)) return end_early(hierarchy, l, report);
   }
   note_areas(report);
-  if (rounded)
-    report.notes.push_back("single precision: nodes settle to " +
-                           std::to_string(report.algebraic_rms_px) +
-                           " px RMS, more than a tenth of the discretisation error; a tolerance "
-                           "below that is solved in double precision");
+  if (rounded) note_rounding(report);
 }
 
 template void nested_iteration(Hierarchy<float>&, const NestedOptions&, double, grid::MemoryMeter&,
