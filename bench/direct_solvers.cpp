@@ -216,6 +216,8 @@ void set_blas_threads(int threads) {
   omp_set_num_threads(threads);
   if (openblas_set_num_threads) openblas_set_num_threads(threads);
 #if DRUMHEAD_BENCH_MKL
+  // The threads that this program has, instead of Intel's own; said before MKL is first used.
+  mkl_set_threading_layer(MKL_THREADING_GNU);
   mkl_set_num_threads(threads);
 #endif
 }
