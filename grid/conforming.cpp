@@ -3,33 +3,30 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "conforming_pressures.h"
 #include "curve_nodes.h"
+#include "held_nodes.h"
+#include "made_of_curves.h"
 #include "split_cell.h"
 
 namespace drumhead::grid {
 namespace {
 
-// Displacements that differ by more than this many times the distance of their points contradict
-// one another: no lattice of this spacing can carry such a strain.
-constexpr double kStrain = 3.0;
-constexpr double kLeastConflict = 1e-6;  // cells
-
 class Conformer {
  public:
-  Conformer(const std::vector<CurvePair>& curves, const std::vector<CurveWalk>& walks,
-            const Lattice& lattice, const ConformOptions& options)
-      : curves_(curves), lattice_(lattice), options_(options), walks_(walks) {}
+  Conformer(const std::vector<double>& weights, const CurveWalks& walks, const Lattice& lattice,
+            const ConformOptions& options)
+      : weights_(weights), lattice_(lattice), options_(options), walks_(walks) {}
 
   ConformingCells run() {
     while (!assemble()) {
     }
-    hold_nodes();
+    list_nodes();
+    visits_ = NodeVisits(std::move(nodes_.visits));
+    hold_nodes(visits_, weights_, lattice_, cells_);
     share_pressures(cells_, options_.least_area);
     for (const auto& [number, how] : simplified_)
       cells_.simplified_cells.push_back(
@@ -37,6 +34,8 @@ class Conformer {
     cells_.lost_tips = nodes_.lost_tips;
     return std::move(cells_);
   }
+  /// After `run`: what the cells need for other targets.
+  NodeVisits visits() { return std::move(visits_); }
 
  private:
   Vertex lattice_node(int i, int j) const { return Vertex(j) * (lattice_.nx + 1) + i; }
@@ -47,23 +46,22 @@ class Conformer {
   std::vector<std::int64_t> special_cells() const;
   std::vector<CellVertex> outline(CellIndex cell) const;
   bool add_cell(CellIndex cell, const std::vector<Chord>& chords);
-  void hold_nodes();
-  HeldNode held(Point rest, const std::vector<int>& visits, bool fixed);
-  void note(const Visit& a, const Visit& b, Point rest, double distance);
+  void list_nodes();
 
-  const std::vector<CurvePair>& curves_;
+  const std::vector<double>& weights_;
   const Lattice& lattice_;
   const ConformOptions& options_;
-  const std::vector<CurveWalk>& walks_;
+  const CurveWalks& walks_;
   SimplifiedCells simplified_;
   CurveNodes nodes_;
+  NodeVisits visits_;
   std::size_t edge_nodes_ = 0;  // curve nodes on edges; the ones in cells follow
   ConformingCells cells_;
 };
 
 /// Places the nodes and splits all special cells; false if some had to be simplified.
 bool Conformer::assemble() {
-  nodes_ = place_nodes(walks_, curves_, lattice_, options_.snap, simplified_);
+  nodes_ = place_nodes(walks_, weights_, lattice_, options_.snap, simplified_);
   edge_nodes_ = nodes_.edge.size();
   cells_ = {};
   cells_.nx = lattice_.nx;
@@ -184,84 +182,19 @@ bool Conformer::add_cell(CellIndex cell, const std::vector<Chord>& chords) {
   return true;
 }
 
-void Conformer::note(const Visit& a, const Visit& b, Point rest, double distance) {
-  cells_.conflicts.push_back({rest, distance, a.curve, b.curve});
-}
-
-/// What the visits of one node ask for together (rule 6); `fixed`: it lies on the outer boundary.
-HeldNode Conformer::held(Point rest, const std::vector<int>& visits, bool fixed) {
-  auto visit = [&](int n) -> const Visit& { return nodes_.visits[std::size_t(n)]; };
-  auto stiffness = [&](int n) {
-    const double d = curves_[std::size_t(visit(n).curve)].weight;
-    return d * (lattice_.cell_px / lattice_.side_px) * visit(n).arc;
-  };
-  auto hard = [&](int n) { return std::isinf(curves_[std::size_t(visit(n).curve)].weight); };
-  const bool any_hard = fixed || std::ranges::any_of(visits, hard);
-  int nearest = -1;
-  for (const int n : visits)
-    if ((hard(n) || !any_hard || fixed) &&
-        (nearest < 0 || length(visit(n).source - rest) < length(visit(nearest).source - rest)))
-      nearest = n;
-  const Visit& first = visit(nearest);
-  const Point base = fixed ? Point{} : first.displacement;
-  const Visit* worst = nullptr;
-  double largest = 0.0, total = 0.0, weight = 0.0;
-  Point mean;
-  for (const int n : visits) {
-    const double distance = length(visit(n).displacement - base);
-    const double apart = length(visit(n).source - (fixed ? rest : first.source));
-    const bool against = distance > kStrain * apart + kLeastConflict;
-    if (against && distance > largest) {
-      largest = distance;
-      worst = &visit(n);
-    }
-    if (any_hard && !hard(n)) continue;
-    const double w = any_hard ? 1.0 : stiffness(n);
-    total += w;
-    weight += w;
-    // A branch that agrees says the same as the nearest one, which lies on the node.
-    mean = mean + w * (against ? visit(n).displacement : base);
-  }
-  if (worst != nullptr) note(first, *worst, rest, largest);
-  HeldNode node{rest, base, any_hard ? std::numeric_limits<double>::infinity() : total};
-  if (!fixed && weight > 0.0) node.wanted = (1.0 / weight) * mean;
-  return node;
-}
-
-void Conformer::hold_nodes() {
-  std::vector<int> order(nodes_.visits.size());
-  std::iota(order.begin(), order.end(), 0);
-  auto vertex = [&](int n) { return nodes_.visits[std::size_t(n)].vertex; };
-  std::ranges::stable_sort(order, {}, vertex);
+/// Lists the held nodes in their places.
+void Conformer::list_nodes() {
   cells_.node_begin.assign(std::size_t(lattice_.ny) + 2, 0);
-  cells_.curve_node.resize(nodes_.curve_rest.size());
-  std::vector<int> group;
-  for (std::size_t n = 0; n < order.size();) {
-    const Vertex at = vertex(order[n]);
-    for (group.clear(); n < order.size() && vertex(order[n]) == at; ++n) group.push_back(order[n]);
-    if (at >= first_curve_node()) {
-      const std::size_t k = std::size_t(at - first_curve_node());
-      const Point rest = nodes_.curve_rest[k];
-      const bool fixed =
-          rest.x == 0.0 || rest.y == 0.0 || rest.x == lattice_.nx || rest.y == lattice_.ny;
-      cells_.curve_node[k] = held(rest, group, fixed);
-      continue;
-    }
-    const int i = int(at % (lattice_.nx + 1)), j = int(at / (lattice_.nx + 1));
-    const int k = nodes_.find_held(at);
-    if (k < 0) {  // a boundary node, which is fixed anyway
-      held({double(i), double(j)}, group, true);
-      continue;
-    }
-    cells_.node.push_back(held(nodes_.held_rest[std::size_t(k)], group, false));
-    cells_.node_column.push_back(i);
-    ++cells_.node_begin[std::size_t(j) + 1];
+  for (std::size_t n = 0; n < nodes_.held.size(); ++n) {
+    cells_.node.push_back({.rest = nodes_.held_rest[n], .wanted = {}});
+    cells_.node_column.push_back(int(nodes_.held[n] % (lattice_.nx + 1)));
+    ++cells_.node_begin[std::size_t(nodes_.held[n] / (lattice_.nx + 1)) + 1];
   }
-  assert(cells_.node.size() == nodes_.held.size());
   for (std::size_t j = 0; j + 1 < cells_.node_begin.size(); ++j)
     cells_.node_begin[j + 1] += cells_.node_begin[j];
   cells_.curve_cell.reserve(nodes_.cell.size());
   for (std::size_t k = 0; k < nodes_.cell.size(); ++k) {
+    cells_.curve_node.push_back({.rest = nodes_.curve_rest[k], .wanted = {}});
     cells_.curve_cell.push_back({nodes_.cell[k].i, nodes_.cell[k].j});
     const EdgeIndex edge = nodes_.edge[k];
     cells_.curve_place.push_back(edge == kNoEdge
@@ -272,26 +205,104 @@ void Conformer::hold_nodes() {
 
 }  // namespace
 
-std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves,
-                                            const Lattice& lattice, int levels,
-                                            const ConformOptions& options) {
+namespace {
+
+void check_snap(const ConformOptions& options) {
   if (!(options.snap > 0.0 && options.snap <= 0.25))
     throw std::invalid_argument("snap = " + std::to_string(options.snap) +
                                 ": must be above 0 and at most 0.25");
-  for (const CurvePair& curve : curves)
+}
+
+std::vector<double> weights_of(const std::vector<CurvePair>& curves) {
+  std::vector<double> weights;
+  for (const CurvePair& curve : curves) {
     if (!(curve.weight > 0.0))
       throw std::invalid_argument("curve '" + curve.name +
                                   "': weight = " + std::to_string(curve.weight) +
                                   ": must be positive (infinity allowed)");
+    weights.push_back(curve.weight);
+  }
+  return weights;
+}
+
+}  // namespace
+
+std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves,
+                                            const Lattice& lattice, int levels,
+                                            const ConformOptions& options) {
+  check_snap(options);
+  const std::vector<double> weights = weights_of(curves);
   std::vector<CurveWalk> walks;
+  CurveWalks pointers;
   for (const CurvePair& curve : curves) walks.push_back(walk(curve, lattice));
+  for (const CurveWalk& walk : walks) pointers.push_back(&walk);
   std::vector<ConformingCells> cells;
   for (Lattice on_level = lattice; int(cells.size()) < levels;) {
-    cells.push_back(Conformer(curves, walks, on_level, options).run());
+    cells.push_back(Conformer(weights, pointers, on_level, options).run());
     for (CurveWalk& walk : walks) walk = coarsened(walk, on_level);
     on_level = coarsened(on_level);
   }
   return cells;
+}
+
+using WalksOfCurve = std::vector<CurveWalk>;  // level by level
+
+struct CurveConformer::Kept {
+  std::vector<Lattice> lattices;
+  ConformOptions options;
+  MadeOfCurves<WalksOfCurve> made;
+  MadeOfCurves<WalksOfCurve>::Pointers walks;  // of the last curves
+  std::vector<double> weights;                 // of the last curves
+  std::vector<NodeVisits> visits;              // per level
+
+  CurveWalks on_level(std::size_t l) const {
+    CurveWalks out;
+    for (const auto& walk : walks) out.push_back(&(*walk)[l]);
+    return out;
+  }
+};
+
+CurveConformer::CurveConformer(const Lattice& lattice, int levels, const ConformOptions& options)
+    : kept_(std::make_unique<Kept>()) {
+  check_snap(options);
+  kept_->options = options;
+  kept_->lattices = {lattice};
+  while (int(kept_->lattices.size()) < levels)
+    kept_->lattices.push_back(coarsened(kept_->lattices.back()));
+}
+
+CurveConformer::~CurveConformer() = default;
+
+std::vector<ConformingCells> CurveConformer::conform(const std::vector<CurvePair>& curves) {
+  std::vector<double> weights = weights_of(curves);
+  auto walks = kept_->made.of(curves, [&](const CurvePair& curve) {
+    WalksOfCurve levels{walk(curve, kept_->lattices.front())};
+    for (std::size_t l = 0; l + 1 < kept_->lattices.size(); ++l)
+      levels.push_back(coarsened(levels.back(), kept_->lattices[l]));
+    return levels;
+  });
+  const bool same = !kept_->visits.empty() && weights == kept_->weights &&
+                    std::ranges::equal(walks, kept_->walks, [](const auto& a, const auto& b) {
+                      return a == b || std::ranges::equal(*a, *b, same_source);
+                    });
+  kept_->walks = std::move(walks);
+  kept_->weights = std::move(weights);
+  std::vector<ConformingCells> cells;
+  if (same) return cells;
+  kept_->visits.clear();
+  for (std::size_t l = 0; l < kept_->lattices.size(); ++l) {
+    const CurveWalks on_level = kept_->on_level(l);
+    Conformer conformer(kept_->weights, on_level, kept_->lattices[l], kept_->options);
+    cells.push_back(conformer.run());
+    kept_->visits.push_back(conformer.visits());
+  }
+  return cells;
+}
+
+void CurveConformer::retarget(int level, ConformingCells& cells) {
+  const std::size_t l = std::size_t(level);
+  kept_->visits[l].retarget(kept_->on_level(l));
+  hold_nodes(kept_->visits[l], kept_->weights, kept_->lattices[l], cells);
 }
 
 ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,

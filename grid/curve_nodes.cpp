@@ -34,16 +34,16 @@ struct Claim {
 
 class Placer {
  public:
-  Placer(const std::vector<CurveWalk>& walks, const std::vector<CurvePair>& curves,
-         const Lattice& lattice, double snap, const SimplifiedCells& simplified)
+  Placer(const CurveWalks& walks, const std::vector<double>& weights, const Lattice& lattice,
+         double snap, const SimplifiedCells& simplified)
       : walks_(walks),
-        curves_(curves),
+        weights_(weights),
         nx_(lattice.nx),
         ny_(lattice.ny),
         snap_(snap),
         simplified_(simplified) {
     for (std::size_t c = 0; c < walks.size(); ++c)
-      for (const CurveEvent& event : walks[c].events) events_.push_back({&event, int(c)});
+      for (const CurveEvent& event : walks[c]->events) events_.push_back({&event, int(c)});
   }
 
   CurveNodes run() {
@@ -57,7 +57,7 @@ class Placer {
     std::size_t first = 0;
     for (std::size_t c = 0; c < walks_.size(); ++c) {
       follow(int(c), first);
-      first += walks_[c].events.size();
+      first += walks_[c]->events.size();
     }
     return std::move(nodes_);
   }
@@ -72,7 +72,7 @@ class Placer {
   }
   Point rest_of_lattice(Vertex node) const { return {double(column(node)), double(row(node))}; }
   bool hard(int event) const {
-    return std::isinf(curves_[std::size_t(events_[std::size_t(event)].curve)].weight);
+    return std::isinf(weights_[std::size_t(events_[std::size_t(event)].curve)]);
   }
   Simplified simplified(int i, int j) const {
     if (simplified_.empty()) return Simplified::no;
@@ -106,8 +106,8 @@ class Placer {
   void follow(int curve, std::size_t first);
   Point rest(Vertex vertex) const;
 
-  const std::vector<CurveWalk>& walks_;
-  const std::vector<CurvePair>& curves_;
+  const CurveWalks& walks_;
+  const std::vector<double>& weights_;
   int nx_, ny_;
   double snap_;
   const SimplifiedCells& simplified_;
@@ -248,7 +248,7 @@ Point Placer::rest(Vertex vertex) const {
 
 /// The visits and chords of a curve whose events start at `first`.
 void Placer::follow(int curve, std::size_t first) {
-  const CurveWalk& walk = walks_[std::size_t(curve)];
+  const CurveWalk& walk = *walks_[std::size_t(curve)];
   struct Stay {
     Visit visit;
     double from, to;  // arc lengths of its first and last event
@@ -263,7 +263,7 @@ void Placer::follow(int curve, std::size_t first) {
     const CurveEvent& event = walk.events[n];
     const Vertex vertex = events_[first + n].vertex;
     if (vertex < 0) continue;
-    const Visit visit{vertex, curve, event.source, event.target - event.source};
+    const Visit visit{vertex, curve, event.source, event.target - event.source, 0.0, int(n)};
     if (stays.empty() || stays.back().visit.vertex != vertex)
       stays.push_back({visit, event.arc, event.arc, event.after});
     else if (nearer(stays.back().visit, event.source))
@@ -303,9 +303,9 @@ int CurveNodes::find_held(Vertex vertex) const {
   return at != held.end() && *at == vertex ? int(at - held.begin()) : -1;
 }
 
-CurveNodes place_nodes(const std::vector<CurveWalk>& walks, const std::vector<CurvePair>& curves,
+CurveNodes place_nodes(const CurveWalks& walks, const std::vector<double>& weights,
                        const Lattice& lattice, double snap, const SimplifiedCells& simplified) {
-  return Placer(walks, curves, lattice, snap, simplified).run();
+  return Placer(walks, weights, lattice, snap, simplified).run();
 }
 
 }  // namespace drumhead::grid

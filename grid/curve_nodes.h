@@ -14,12 +14,18 @@ namespace drumhead::grid {
 /// A lattice node (j·(nx+1) + i) or, from (nx+1)(ny+1) on, a curve node.
 using Vertex = std::int64_t;
 
+/// The walks of all curves on one lattice.
+using CurveWalks = std::vector<const CurveWalk*>;
+
 /// A curve's stay at one node.
 struct Visit {
   Vertex vertex = -1;
   int curve = 0;
   Point source, displacement;  ///< of the curve's event nearest to the node
   double arc = 0.0;            ///< half the arcs to the visits before and after
+  int event = -1;  ///< that one, of its curve's; −1: on the chord between visits `from` and `to`
+  int from = -1, to = -1;
+  double share = 0.0;  ///< of that chord: where on it
 };
 
 /// Two visits that follow one another along a curve, and the cell between them.
@@ -47,7 +53,8 @@ struct CurveNodes {
   int find_held(Vertex vertex) const;
 };
 
-CurveNodes place_nodes(const std::vector<CurveWalk>& walks, const std::vector<CurvePair>& curves,
+/// `weights`: d of each curve.
+CurveNodes place_nodes(const CurveWalks& walks, const std::vector<double>& weights,
                        const Lattice& lattice, double snap, const SimplifiedCells& simplified);
 
 }  // namespace drumhead::grid

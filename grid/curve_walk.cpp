@@ -199,6 +199,15 @@ class Walker {
 
 }  // namespace
 
+bool same_source(const CurveWalk& a, const CurveWalk& b) {
+  const auto same = [](const CurveEvent& p, const CurveEvent& q) {
+    return p.edge == q.edge && p.along == q.along && p.after == q.after && p.source == q.source &&
+           p.arc == q.arc;
+  };
+  return a.closed == b.closed && a.length == b.length &&
+         std::ranges::equal(a.events, b.events, same);
+}
+
 CurveWalk walk(const CurvePair& curve, const Lattice& lattice) {
   return Walker(curve, lattice).run();
 }

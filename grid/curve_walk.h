@@ -37,6 +37,9 @@ struct CurveWalk {
   CurveEvent middle;            ///< the event of a curve without any
 };
 
+/// Whether two walks have the same events, whatever their targets.
+bool same_source(const CurveWalk& a, const CurveWalk& b);
+
 /// Events of one curve, in order, double crossings cancelled. Throws std::invalid_argument when the
 /// source leaves the lattice.
 CurveWalk walk(const CurvePair& curve, const Lattice& lattice);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "crossings.h"
+#include "made_of_curves.h"
 #include "quadrature.h"
 
 namespace drumhead::grid {
@@ -89,12 +90,26 @@ Integral straight_arc(const ChordPair& pair, Cell cell, double t0, double t1) {
   return sum;
 }
 
+/// One curve: its stays and which of them follow one another, as numbers of their cells.
+struct CutCurve {
+  std::vector<Stay> stays;
+  std::vector<std::array<std::ptrdiff_t, 2>> followers;
+};
+
+std::ptrdiff_t number(Cell cell, const Lattice& lattice) {
+  return std::ptrdiff_t(cell.j) * lattice.nx + cell.i;
+}
+
 class Cutter {
  public:
   Cutter(const Lattice& lattice, double most_weight)
       : lattice_(lattice), most_weight_(most_weight) {}
 
-  void add(const CurvePair& curve) {
+  CutCurve cut(const CurvePair& curve) {
+    if (!(curve.weight > 0.0))
+      throw std::invalid_argument("curve '" + curve.name +
+                                  "': weight = " + std::to_string(curve.weight) +
+                                  ": must be positive (infinity allowed)");
     std::vector<Stay> stays;
     for_matched(curve, [&](const CubicBezier& source, const CubicBezier& target) {
       if (source.constant_speed() && target.constant_speed())
@@ -104,10 +119,8 @@ class Cutter {
     });
     const Point gap = lattice_.to_cells(curve.source.back().control[3]) -
                       lattice_.to_cells(curve.source.front().control[0]);
-    keep(stays, length(gap) < 1e-6, std::min(curve.weight, most_weight_));
+    return keep(std::move(stays), length(gap) < 1e-6, std::min(curve.weight, most_weight_));
   }
-
-  CutCells finish();
 
  private:
   void add_straight(const CurvePair& curve, const CubicBezier& source, const CubicBezier& target,
@@ -168,8 +181,8 @@ class Cutter {
     return std::min(x, y) > kSnap && std::max(x, y) < 1.0 - kSnap;
   }
 
-  /// Drops stays that are too short, notes which cells follow one another, and files the rest.
-  void keep(std::vector<Stay>& stays, bool closed, double weight) {
+  /// Drops stays that are too short, and notes which of the others follow one another.
+  CutCurve keep(std::vector<Stay> stays, bool closed, double weight) const {
     if (closed && stays.size() > 1 && stays.front().cell == stays.back().cell) {
       stays.front().integral.add(stays.back().integral);
       stays.pop_back();
@@ -178,21 +191,20 @@ class Cutter {
     // d in mu per side_px becomes mu per cell.
     const double stiffness = weight * lattice_.cell_px / lattice_.side_px;
     for (Stay& stay : stays) stay.integral.stiffness = stiffness * stay.integral.length;
+    CutCurve curve;
     auto follow = [&](const Stay& a, const Stay& b) {
-      if (!(a.cell == b.cell)) followers_.push_back({index(a.cell), index(b.cell)});
+      if (!(a.cell == b.cell))
+        curve.followers.push_back({number(a.cell, lattice_), number(b.cell, lattice_)});
     };
     for (std::size_t n = 0; n + 1 < stays.size(); ++n) follow(stays[n], stays[n + 1]);
     if (closed && stays.size() > 2) follow(stays.back(), stays.front());
-    stays_.insert(stays_.end(), stays.begin(), stays.end());
+    curve.stays = std::move(stays);
+    return curve;
   }
-
-  std::ptrdiff_t index(Cell cell) const { return std::ptrdiff_t(cell.j) * lattice_.nx + cell.i; }
 
   const Lattice& lattice_;
   double most_weight_;
   std::vector<double> crossings_;  // of the segment at hand
-  std::vector<Stay> stays_;
-  std::vector<std::array<std::ptrdiff_t, 2>> followers_;
 };
 
 /// Zeroes the weights of nodes on the fixed boundary; returns what is left.
@@ -222,17 +234,23 @@ void set_links(CutCells& cuts, std::vector<std::array<int, 2>>& pairs) {
     cuts.link_begin[k + 1] += cuts.link_begin[k];
 }
 
-CutCells Cutter::finish() {
-  std::ranges::stable_sort(stays_, {}, [&](const Stay& s) { return index(s.cell); });
+/// Joins what curves have in one cell; `curves`: pointers to CutCurve.
+template <class Curves>
+CutCells join(const Curves& curves, const Lattice& lattice) {
+  std::vector<std::pair<std::ptrdiff_t, const Stay*>> stays;
+  for (const auto& curve : curves)
+    for (const Stay& stay : curve->stays) stays.push_back({number(stay.cell, lattice), &stay});
+  std::ranges::stable_sort(stays, {}, [](const auto& s) { return s.first; });
   CutCells cuts;
-  cuts.row_begin.assign(std::size_t(lattice_.ny) + 1, 0);
+  cuts.row_begin.assign(std::size_t(lattice.ny) + 1, 0);
   std::vector<std::ptrdiff_t> kept;
-  for (std::size_t n = 0; n < stays_.size();) {
-    const Cell cell = stays_[n].cell;
+  for (std::size_t n = 0; n < stays.size();) {
+    const auto [own, first] = stays[n];
+    const Cell cell = first->cell;
     Integral sum;
-    for (; n < stays_.size() && stays_[n].cell == cell; ++n) sum.add(stays_[n].integral);
+    for (; n < stays.size() && stays[n].first == own; ++n) sum.add(stays[n].second->integral);
     for (double& w : sum.weight) w /= sum.length;
-    if (keep_interior(sum.weight, cell.i, cell.j, lattice_.nx, lattice_.ny) < kLeastInterior)
+    if (keep_interior(sum.weight, cell.i, cell.j, lattice.nx, lattice.ny) < kLeastInterior)
       continue;
     cuts.column.push_back(cell.i);
     cuts.weight.push_back(sum.weight);
@@ -240,19 +258,20 @@ CutCells Cutter::finish() {
     cuts.wanted.push_back((1.0 / sum.length) * sum.wanted);
     cuts.compliance.push_back(std::isinf(sum.stiffness) ? 0.0 : 1.0 / sum.stiffness);
     ++cuts.row_begin[std::size_t(cell.j) + 1];
-    kept.push_back(index(cell));
+    kept.push_back(own);
   }
-  for (std::size_t j = 0; j < std::size_t(lattice_.ny); ++j)
+  for (std::size_t j = 0; j < std::size_t(lattice.ny); ++j)
     cuts.row_begin[j + 1] += cuts.row_begin[j];
   std::vector<std::array<int, 2>> pairs;
   auto find = [&](std::ptrdiff_t cell) {
     const auto at = std::ranges::lower_bound(kept, cell);
     return at != kept.end() && *at == cell ? int(at - kept.begin()) : -1;
   };
-  for (const auto& [a, b] : followers_) {
-    const int k = find(a), l = find(b);
-    if (k >= 0 && l >= 0) pairs.push_back({k, l});
-  }
+  for (const auto& curve : curves)
+    for (const auto& [a, b] : curve->followers) {
+      const int k = find(a), l = find(b);
+      if (k >= 0 && l >= 0) pairs.push_back({k, l});
+    }
   set_links(cuts, pairs);
   return cuts;
 }
@@ -261,14 +280,27 @@ CutCells Cutter::finish() {
 
 CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, double most_weight) {
   Cutter cutter(lattice, most_weight);
-  for (const CurvePair& curve : curves) {
-    if (!(curve.weight > 0.0))
-      throw std::invalid_argument("curve '" + curve.name +
-                                  "': weight = " + std::to_string(curve.weight) +
-                                  ": must be positive (infinity allowed)");
-    cutter.add(curve);
-  }
-  return cutter.finish();
+  std::vector<std::unique_ptr<const CutCurve>> cut;
+  for (const CurvePair& curve : curves)
+    cut.push_back(std::make_unique<const CutCurve>(cutter.cut(curve)));
+  return join(cut, lattice);
+}
+
+struct CurveCutter::Kept {
+  Lattice lattice;
+  double most_weight;
+  MadeOfCurves<CutCurve> curves;
+};
+
+CurveCutter::CurveCutter(const Lattice& lattice, double most_weight)
+    : kept_(std::make_unique<Kept>(Kept{lattice, most_weight, {}})) {}
+
+CurveCutter::~CurveCutter() = default;
+
+CutCells CurveCutter::cut(const std::vector<CurvePair>& curves) {
+  Cutter cutter(kept_->lattice, kept_->most_weight);
+  return join(kept_->curves.of(curves, [&](const CurvePair& curve) { return cutter.cut(curve); }),
+              kept_->lattice);
 }
 
 namespace {

@@ -92,8 +92,15 @@ int CellSplit::visit_between(int from, int to, double lambda, const CellVertex& 
   const double half = 0.5 * length(end.source - start.source);
   start.arc = std::max(0.0, start.arc - (1.0 - lambda) * half);
   end.arc = std::max(0.0, end.arc - lambda * half);
-  const Visit visit{at.vertex, start.curve, (1.0 - lambda) * start.source + lambda * end.source,
-                    (1.0 - lambda) * start.displacement + lambda * end.displacement, half};
+  const Visit visit{at.vertex,
+                    start.curve,
+                    (1.0 - lambda) * start.source + lambda * end.source,
+                    (1.0 - lambda) * start.displacement + lambda * end.displacement,
+                    half,
+                    -1,
+                    from,
+                    to,
+                    lambda};
   nodes_.visits.push_back(visit);
   return int(nodes_.visits.size()) - 1;
 }

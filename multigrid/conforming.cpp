@@ -183,6 +183,15 @@ void ConformingLevel<T>::retarget(const grid::ConformingCells& other, T spacing)
 }
 
 template <class T>
+void ConformingLevel<T>::clear(const kernels::Plane<T>& ux, const kernels::Plane<T>& uy) {
+  std::ranges::fill(pressure, T(0));
+  std::ranges::fill(shift, T(0));
+  for (auto* nodes : {&cells.held, &cells.crossing})
+    for (kernels::HeldNode<T>& node : *nodes) node.off_x = node.off_y = T(0);
+  set_held(*this, ux, uy);
+}
+
+template <class T>
 std::size_t ConformingLevel<T>::curve_unknowns() const {
   auto soft = [](const kernels::HeldNode<T>& node) { return !node.known(); };
   return std::ranges::any_of(cells.crossing, soft) ? 2 * cells.crossing.size() : 0;

@@ -36,6 +36,8 @@ struct ConformingLevel {
   std::size_t curve_unknowns() const;
   /// Takes the targets of other curves with the same sources; soft nodes stay as far off.
   void retarget(const grid::ConformingCells& other, T spacing);
+  /// No pressures, and held nodes, whose planes are these, at their targets.
+  void clear(const kernels::Plane<T>& ux, const kernels::Plane<T>& uy);
   std::size_t bytes() const;
 };
 

@@ -106,6 +106,7 @@ void Hierarchy<T>::set_material(const grid::Material& material, grid::MemoryMete
         T(material.model == kernels::Model::neohookean ? kFirstFloor : material.eps);
   }
   if (traits_.model == kernels::Model::arap || fold_free) relieve(material, meter);
+  law_ = levels_.front().solid.law;
   for (int l = 0; l + 1 < size(); ++l) {
     Level<T>&fine = levels_[std::size_t(l)], &coarse = levels_[std::size_t(l) + 1];
     auto average = [&](const grid::Field<T>& from, grid::Field<T>& to) {
@@ -238,8 +239,17 @@ void Hierarchy<T>::set_wanted(int l, std::vector<grid::Point> wanted) {
 template <class T>
 void Hierarchy<T>::conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
                            grid::MemoryMeter& meter) {
-  std::vector<grid::ConformingCells> cells =
-      grid::conform_levels(curves, lattice, size(), kConform);
+  conform(grid::conform_levels(curves, lattice, size(), kConform), meter);
+}
+
+template <class T>
+std::unique_ptr<grid::CurveConformer> Hierarchy<T>::make_conformer(
+    const grid::Lattice& lattice) const {
+  return std::make_unique<grid::CurveConformer>(lattice, size(), kConform);
+}
+
+template <class T>
+void Hierarchy<T>::conform(std::vector<grid::ConformingCells> cells, grid::MemoryMeter& meter) {
   for (int l = 0; l < size(); ++l) {
     (*this)[l].conform(std::move(cells[std::size_t(l)]), meter);
     if (l > 0)
@@ -257,6 +267,30 @@ void Hierarchy<T>::retarget(const std::vector<grid::CurvePair>& curves,
     Level<T>& level = (*this)[l];
     level.conforming->retarget(cells[std::size_t(l)], level.spacing);
     set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
+  }
+}
+
+template <class T>
+void Hierarchy<T>::clear() {
+  for (Level<T>& level : levels_) level.clear(law_);
+}
+
+template <class T>
+void Hierarchy<T>::retarget(const grid::CutCells& cuts) {
+  levels_.front().wanted = cuts.wanted;
+  grid::CutCells rows = cuts;
+  for (int l = 0; l + 1 < size(); ++l) {
+    rows = grid::coarsen(rows, (*this)[l].nx, (*this)[l].ny).cuts;
+    (*this)[l + 1].wanted = rows.wanted;
+  }
+}
+
+template <class T>
+void Hierarchy<T>::retarget(grid::CurveConformer& conformer) {
+  for (int l = 0; l < size(); ++l) {
+    Level<T>& level = (*this)[l];
+    conformer.retarget(l, level.conforming->geometry);
+    level.conforming->retarget(level.conforming->geometry, level.spacing);
   }
 }
 

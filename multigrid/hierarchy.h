@@ -21,6 +21,16 @@ class Hierarchy {
   /// Makes all levels conform to curves. `lattice`: the finest level's.
   void conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
                grid::MemoryMeter& meter);
+  /// What makes such cells of all levels.
+  std::unique_ptr<grid::CurveConformer> make_conformer(const grid::Lattice& lattice) const;
+  /// Makes all levels conform to these cells.
+  void conform(std::vector<grid::ConformingCells> cells, grid::MemoryMeter& meter);
+  /// Clears all levels: as after the construction, for the same curves.
+  void clear();
+  /// Takes the wanted displacements of cuts that are otherwise the ones it was made of.
+  void retarget(const grid::CutCells& cuts);
+  /// Takes the targets that the curves of its cells have now.
+  void retarget(grid::CurveConformer& conformer);
   /// Wanted displacements of level l from those of the finest level's cuts, averaged as the cuts.
   void set_wanted(int l, std::vector<grid::Point> wanted);
   /// Other targets of the same sources on level `top` and all coarser ones, into the state too.
@@ -59,6 +69,7 @@ class Hierarchy {
 
   SceneTraits traits_;
   std::deque<Level<T>> levels_;
+  kernels::Law<T> law_;  ///< of all levels at first
   kernels::RowScratch<T> scratch_;
 };
 

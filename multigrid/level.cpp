@@ -152,6 +152,21 @@ void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   meter.add(conforming->bytes());
 }
 
+template <class T>
+void Level<T>::clear(const kernels::Law<T>& law) {
+  for (grid::Field<T>* field : {&ux, &uy, &pressure}) field->clear();
+  for (std::vector<T>* values : {&q, &dq, &fq}) std::ranges::fill(*values, T(0));
+  d.clear();
+  f.clear();
+  clamp_centre = pressure_jump = T(0);
+  clamp_width = T(1);
+  solid.law = law;
+  solid.averaged = false;
+  solid.largest = T(2);
+  for (grid::Field<T>& shift : solid.shift) shift.clear();
+  if (conforming) conforming->clear(ux.view(), uy.view());
+}
+
 template class CutRows<float>;
 template class CutRows<double>;
 template struct Level<float>;

@@ -25,6 +25,7 @@ struct SceneTraits {
   double jump = 0.0;           ///< qs of the equations: 0 for exact rows
   double jump_inside = 0.005;  ///< qs of the preconditioner
   double stiffest = 1.0;       ///< largest mu of a cell: no cell's P is smoothed too much
+  friend bool operator==(const SceneTraits&, const SceneTraits&) = default;
 };
 
 /// The curve rows of a level in the solver's number type.
@@ -94,6 +95,8 @@ struct Level {
   bool nonlinear() const { return pressure || kernels::isotropic(solid.law.model); }
   /// The membrane without pressures, for the harmonic start.
   kernels::Membrane<T> harmonic() const;
+  /// State, linear system and what Newton's method has made of the law as they were at first.
+  void clear(const kernels::Law<T>& law);
   /// Makes the level conform to curves.
   void conform(grid::ConformingCells cells, grid::MemoryMeter& meter);
   std::size_t nodes() const { return std::size_t(nx + 1) * std::size_t(ny + 1); }

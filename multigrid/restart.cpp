@@ -133,19 +133,6 @@ void set_conforming_state(Level<T>& level, const Solution& start) {
   });
 }
 
-template <class T>
-void clear_state(Level<T>& level) {
-  level.ux.clear();
-  level.uy.clear();
-  level.pressure.clear();
-  std::ranges::fill(level.q, T(0));
-  if (!level.conforming) return;
-  std::ranges::fill(level.conforming->pressure, T(0));
-  for (auto* nodes : {&level.conforming->cells.held, &level.conforming->cells.crossing})
-    for (kernels::HeldNode<T>& node : *nodes) node.off_x = node.off_y = T(0);
-  set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
-}
-
 }  // namespace
 
 void check_start(const Solution& start, const grid::Lattice& lattice) {
@@ -209,9 +196,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, 0, 0);
   NewtonReport done = Newton<T>(hierarchy, 0, meter).run(newton, clamp, progress);
   if (done.status != Status::converged && done.status != Status::cancelled) {
-    clear_state(level);
-    level.solid.law = law;
-    for (auto& shift : level.solid.shift) shift.clear();
+    level.clear(law);
     return false;
   }
   report.status = done.status;

@@ -22,6 +22,7 @@
 #include "progress_line.h"
 #include "restart.h"
 #include "scene.h"
+#include "scene_levels.h"
 #include "solve_notes.h"
 #include "split_cells.h"
 
@@ -157,32 +158,48 @@ NestedOptions nested_options(const WarpProblem& problem, const SolverOptions& op
           .progress = options.progress};
 }
 
+/// What decides the levels, but for the curves.
+LevelsKey levels_key(const WarpProblem& problem, const SolverOptions& options,
+                     SolveReport& report) {
+  LevelsKey key{.lattice = problem.lattice,
+                .material = options.exact ? problem.material : capped(problem.material, report),
+                .most_weight = options.exact ? std::numeric_limits<double>::infinity()
+                                             : kMostWeight * largest_mu(problem.material),
+                .conforming = options.curve_method == CurveMethod::conforming,
+                .threads = kernels::thread_limit()};
+  key.traits = {.pressure = has_pressure(key.material),
+                .stiffness = grid::largest_stiffness(key.material),
+                .model = key.material.model,
+                .jump = kJump,
+                .jump_inside = kJump,
+                .stiffest = largest_mu(key.material)};
+  return key;
+}
+
 template <class T>
 void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution& solution) {
   SolveReport& report = solution.report;
   const Clock::time_point start = Clock::now();
-  const double most_weight = options.exact ? std::numeric_limits<double>::infinity()
-                                           : kMostWeight * largest_mu(problem.material);
-  const bool conforming = options.curve_method == CurveMethod::conforming;
-  const grid::CutCells cuts = grid::cut(
-      conforming ? std::vector<grid::CurvePair>{} : problem.curves, problem.lattice, most_weight);
-  const grid::Material material =
-      options.exact ? problem.material : capped(problem.material, report);
-  const SceneTraits traits{.pressure = has_pressure(material),
-                           .stiffness = grid::largest_stiffness(material),
-                           .model = material.model,
-                           .jump = kJump,
-                           .jump_inside = kJump,
-                           .stiffest = largest_mu(material)};
-  grid::MemoryMeter meter;
-  Hierarchy<T> hierarchy(problem.lattice, material, cuts, traits, meter);
-  if (conforming) hierarchy.conform(problem.curves, problem.lattice, meter);
+  LevelsKey key = levels_key(problem, options, report);
+  std::optional<SceneLevels<T>> own;
+  const bool keep = options.kept != nullptr && !options.exact;
+  SceneLevels<T>& levels =
+      keep ? options.kept->contents().levels<T>(std::move(key)) : own.emplace(std::move(key));
+  if (keep)
+    levels.lay_out_again(problem.curves);
+  else
+    levels.lay_out(problem.curves);
+  Hierarchy<T>& hierarchy = levels.hierarchy();
+  const grid::CutCells& cuts = levels.cuts();
+  const grid::Material& material = levels.key().material;
+  const bool conforming = levels.key().conforming;
+  grid::MemoryMeter& meter = levels.meter();
   report.lattice_levels = hierarchy.size();
   report.cut_seconds = seconds_since(start);
 
   const Clock::time_point solving = Clock::now();
   NestedOptions nested = nested_options(problem, options, material);
-  if (options.exact && traits.pressure)
+  if (options.exact && levels.key().traits.pressure)
     nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
   if (largest_turn(problem.curves) > kLoadPathTurn)
     nested.set_targets = [&](int start, double t) {
@@ -191,7 +208,8 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
       if (conforming)
         hierarchy.retarget(curves, problem.lattice, start);
       else
-        hierarchy.set_wanted(start, grid::cut(curves, problem.lattice, most_weight).wanted);
+        hierarchy.set_wanted(start,
+                             grid::cut(curves, problem.lattice, levels.key().most_weight).wanted);
     };
   if (!options.start || options.exact ||
       options.start->report.curve_method != options.curve_method ||

@@ -30,6 +30,10 @@ foreach(name coarsen conforming conforming_rules curve cut_cells field lattice m
     LINK drumhead::grid LABEL unit)
 endforeach()
 
+drumhead_test(NAME grid_made_of_curves_test SOURCES grid_made_of_curves_test.cpp
+  LINK drumhead::grid LABEL unit)
+target_include_directories(grid_made_of_curves_test PRIVATE ${PROJECT_SOURCE_DIR}/grid)
+
 drumhead_test(NAME multigrid_split_test SOURCES multigrid_split_test.cpp
   LINK drumhead::multigrid LABEL unit)
 target_include_directories(multigrid_split_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)

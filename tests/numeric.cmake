@@ -68,6 +68,9 @@ drumhead_test(NAME multigrid_allocation_test
   SOURCES multigrid_allocation_test.cpp support/scene_problem.cpp
   LINK drumhead_oracle drumhead::multigrid LABEL unit)
 target_include_directories(multigrid_allocation_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
+drumhead_test(NAME multigrid_kept_levels_test
+  SOURCES multigrid_kept_levels_test.cpp LINK drumhead::multigrid LABEL numeric)
+target_include_directories(multigrid_kept_levels_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
 # The linear solvers alone are not public.
 drumhead_test(NAME multigrid_solvers_test
   SOURCES multigrid_solvers_test.cpp support/scene_problem.cpp

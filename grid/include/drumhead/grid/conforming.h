@@ -36,6 +36,7 @@
 // F_t = 1 + Σ u_a ∇N_a everywhere.
 #include <array>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <drumhead/grid/curve.h>
@@ -160,6 +161,24 @@ ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lat
 std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves,
                                             const Lattice& lattice, int levels,
                                             const ConformOptions& options = {});
+
+/// Conforming cells of one scene after another, on a lattice and the next coarser ones, `levels`
+/// altogether. Only curves that the scene before did not have are looked at; where all have the
+/// same sources and weights, cells stay and only what their nodes are asked for is found anew.
+class CurveConformer {
+ public:
+  CurveConformer(const Lattice& lattice, int levels, const ConformOptions& options = {});
+  ~CurveConformer();
+  /// The cells of all levels, as `conform_levels` has them, which throws likewise; none where those
+  /// of the curves before serve, once `retarget` has told them of the new targets.
+  std::vector<ConformingCells> conform(const std::vector<CurvePair>& curves);
+  /// Gives the cells of a level, as they came from `conform`, the targets of the last curves.
+  void retarget(int level, ConformingCells& cells);
+
+ private:
+  struct Kept;
+  std::unique_ptr<Kept> kept_;
+};
 
 /// The next coarser lattice over the same place: cells of twice the side, an odd count rounded up
 /// (the last cell overhangs the fixed edge).

@@ -35,6 +35,7 @@ struct CubicBezier {
   bool constant_speed() const;
   /// The piece over [t0, t1] with its own parameter in [0, 1] (de Casteljau).
   CubicBezier piece(double t0, double t1) const;
+  friend bool operator==(const CubicBezier&, const CubicBezier&) = default;
 };
 
 /// The straight segment a→b as a Bézier of constant speed.
@@ -53,6 +54,7 @@ struct CurvePair {
   double weight = std::numeric_limits<double>::infinity();
   double turn_degrees =
       0.0;  ///< clockwise turn intended by the user, for rotations beyond 180 degrees
+  friend bool operator==(const CurvePair&, const CurvePair&) = default;
 };
 
 /// Two Béziers whose points at equal t correspond.

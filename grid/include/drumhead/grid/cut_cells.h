@@ -7,6 +7,7 @@
 // on the finest lattice, aggregated exactly to coarser ones: len_p = Σ len_c, w_p = Σ len_c
 // w_c/len_p, 1/(d_p len_p) = Σ (len_c/len_p)²/(d_c len_c).
 #include <array>
+#include <memory>
 #include <vector>
 
 #include <drumhead/grid/curve.h>
@@ -34,6 +35,20 @@ struct CutCells {
 /// which the fixed boundary holds all but 2 %. Cost: linear in crossings and segments. Throws
 /// std::invalid_argument naming curve, place and bound for a source that leaves the lattice.
 CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, double most_weight);
+
+/// Cuts one scene after another by one lattice: only curves that the scene before did not have are
+/// cut, the cells are the same.
+class CurveCutter {
+ public:
+  CurveCutter(const Lattice& lattice, double most_weight);
+  ~CurveCutter();
+  /// As the function `cut`, which throws likewise; a scene that was refused leaves no trace.
+  CutCells cut(const std::vector<CurvePair>& curves);
+
+ private:
+  struct Kept;
+  std::unique_ptr<Kept> kept_;
+};
 
 /// The cut cells of the next coarser lattice and how they hang together with the finer ones.
 struct CoarseCuts {

@@ -20,6 +20,8 @@ class MemoryMeter {
     if (now > peak_) peak_ = now;
   }
   void remove(std::size_t bytes) { current_ -= bytes; }
+  /// The peak from here on.
+  void forget_peak() { peak_ = current_; }
   std::size_t current() const { return current_; }
   std::size_t peak() const { return peak_; }
 

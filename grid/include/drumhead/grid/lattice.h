@@ -20,6 +20,7 @@ struct Lattice {
   double cell_px = 1.0;  ///< h in picture pixels
   Point origin_px;       ///< rest position of node (0, 0)
   double side_px = 1.0;  ///< the longer picture side, the unit length of a curve's weight d
+  friend bool operator==(const Lattice&, const Lattice&) = default;
 
   std::size_t nodes() const { return std::size_t(nx + 1) * std::size_t(ny + 1); }
   std::size_t cells() const { return std::size_t(nx) * std::size_t(ny); }

@@ -19,6 +19,7 @@ struct Material {
   std::vector<float> mu_cells, kappa_cells;
   kernels::Model model = kernels::Model::crpm;
   double eps = 0.2;  ///< arap, fold-free: share of its area below which a cell's corner resists
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// Throws std::invalid_argument naming the value, the cell and the bound.

@@ -5,6 +5,7 @@
 // over a matrix-free multigrid solver. All lengths in picture pixels; a caller who has no picture
 // may take any unit.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,6 +63,22 @@ std::optional<CurveMethod> curve_method_named(std::string_view name);
 
 struct Solution;
 
+/// What a solve cuts and builds besides its solution, kept for the next one by SolverOptions::kept:
+/// about the memory that the report calls solver_bytes, and what the curves are on each lattice.
+class KeptLevels {
+ public:
+  KeptLevels();
+  ~KeptLevels();
+  KeptLevels(KeptLevels&&) noexcept;
+  KeptLevels& operator=(KeptLevels&&) noexcept;
+
+  struct Contents;  ///< the solver's own
+  Contents& contents() { return *contents_; }
+
+ private:
+  std::unique_ptr<Contents> contents_;
+};
+
 struct SolverOptions {
   Solver solver = Solver::gcr;
   /// Conforming curves are hard, not exact, and need Solver::gcr.
@@ -77,6 +94,11 @@ struct SolverOptions {
   /// that does not converge, with exact rows, and where the curves were met in another way, the
   /// scene is solved from the beginning. Automatic goes on as the start did.
   const Solution* start = nullptr;
+  /// Optional: takes over what the last solve left here and leaves its own. Only curves that have
+  /// changed are cut; where only targets have, nothing is built anew. The solution is the same to
+  /// the last bit. Not for two solves at a time; exact rows, which no start helps, neither use nor
+  /// change it.
+  KeptLevels* kept = nullptr;
   int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides
   /// Optional. Called by the calling thread before each Newton step; false: stop
   /// (Status::cancelled; it is not called again).
