@@ -2,10 +2,7 @@
 #include "conforming.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <numeric>
-#include <tuple>
 
 #include "conforming_visits.h"
 
@@ -40,20 +37,6 @@ void add_cell(const grid::ConformingCells& from, int c, int i, int j, T spacing,
   to.triangle_begin.push_back(int(to.triangle.size()));
 }
 
-/// A piece of a special cell's side between two nodes, and the part whose boundary it belongs to.
-struct Piece {
-  std::int64_t a, b;  // numbers of the nodes
-  int part, vertex, i, j;
-  auto operator<=>(const Piece&) const = default;
-};
-/// A part and what it borders on; `i`, `j`: the regular cell, if that is one.
-struct Link {
-  int part;
-  kernels::PartNeighbour other;
-  int i = 0, j = 0;
-  auto order() const { return std::tuple(part, other.vertex); }
-};
-
 /// visit(part, vertex of its boundary, code there, code at the next one)
 template <class F>
 void for_sides(const grid::ConformingCells& cells, int c, F&& visit) {
@@ -66,69 +49,86 @@ void for_sides(const grid::ConformingCells& cells, int c, F&& visit) {
   });
 }
 
-/// Parts beside regular cells.
-void list_borders(const grid::ConformingCells& cells, std::vector<Link>& links) {
-  // Sides of the cell from corner to corner, counter-clockwise: 00, 10, 11, 01.
-  constexpr std::array<std::array<int, 2>, 4> kSide{{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
-  constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};
-  for_special(cells, [&](int c, int i, int j) {
-    for_sides(cells, c, [&](int p, int n, int a, int b) {
-      for (std::size_t side = 0; side < 4; ++side) {
-        const int x = i + kEast[side], y = j + kNorth[side];
-        if (kSide[side] == std::array{a, b} && x >= 0 && y >= 0 && x < cells.nx && y < cells.ny &&
-            cells.find_cell(x, y) < 0)
-          links.push_back({p, {-1, n, int(side)}, x, y});
-      }
-    });
-  });
+// What lies beyond a side of a cell, besides special cells.
+constexpr int kRegular = -1, kOutside = -2;
+constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};
+
+/// The special cells beyond the sides (south, east, north, west) of special cell c at (i, j).
+std::array<int, 4> cells_around(const grid::ConformingCells& cells, int c, int i, int j) {
+  auto beside = [&](int other) {
+    return other >= cells.cell_begin[std::size_t(j)] &&
+                   other < cells.cell_begin[std::size_t(j) + 1] &&
+                   cells.cell_column[std::size_t(other)] == i + other - c
+               ? other
+               : kRegular;
+  };
+  return {j > 0 ? cells.find_cell(i, j - 1) : kOutside, i + 1 < cells.nx ? beside(c + 1) : kOutside,
+          j + 1 < cells.ny ? cells.find_cell(i, j + 1) : kOutside,
+          i > 0 ? beside(c - 1) : kOutside};
 }
 
-/// Parts of two cells with a common piece of a side. A piece between two held nodes may be a
-/// curve's and joins nothing.
-void list_common_pieces(const grid::ConformingCells& cells, std::vector<Link>& links) {
-  std::vector<Piece> pieces;
-  const std::int64_t nodes = std::int64_t(cells.nx + 1) * (cells.ny + 1);
-  for_special(cells, [&](int c, int i, int j) {
-    auto number = [&](int code) {
-      if (code >= kernels::kFirstCrossing) return nodes + code - kernels::kFirstCrossing;
-      return std::int64_t(j + (code >> 1)) * (cells.nx + 1) + i + (code & 1);
-    };
-    auto held = [&](int code) {
-      return code >= kernels::kFirstCrossing ||
-             cells.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
-    };
-    for_sides(cells, c, [&](int p, int n, int a, int b) {
-      if (held(a) && held(b)) return;
-      const auto [low, high] = std::minmax({number(a), number(b)});
-      pieces.push_back({low, high, p, n, i, j});
-    });
-  });
-  std::ranges::sort(pieces);
-  auto side = [](const Piece& own, const Piece& other) {
-    return own.j != other.j ? (own.j < other.j ? 2 : 0) : (own.i < other.i ? 1 : 3);
-  };
-  for (std::size_t n = 0; n + 1 < pieces.size(); ++n) {
-    const Piece &one = pieces[n], &two = pieces[n + 1];
-    if (one.a != two.a || one.b != two.b) continue;
-    links.push_back({one.part, {two.part, one.vertex, side(one, two)}});
-    links.push_back({two.part, {one.part, two.vertex, side(two, one)}});
+/// The side of special cell (i, j) that holds the piece a–b of a part's boundary: counter-clockwise
+/// from corner to corner, or to or from a crossing on the side. −1: the piece is a chord's.
+int side_of(const grid::ConformingCells& cells, int i, int j, int a, int b) {
+  constexpr std::array<std::array<int, 2>, 4> kSide{{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
+  if (a < kernels::kFirstCrossing && b < kernels::kFirstCrossing) {
+    const auto* side = std::ranges::find(kSide, std::array{a, b});
+    return side == kSide.end() ? -1 : int(side - kSide.begin());
+  }
+  const std::size_t n = std::size_t(std::max(a, b) - kernels::kFirstCrossing);
+  switch (cells.curve_place[n]) {
+    case grid::NodePlace::on_x_edge:
+      return cells.curve_cell[n][1] == j ? 0 : 2;
+    case grid::NodePlace::on_y_edge:
+      return cells.curve_cell[n][0] == i ? 3 : 1;
+    default:
+      return -1;
   }
 }
 
+/// The part of special cell `other`, beyond a side, whose boundary has the piece a–b of that side.
+int part_across(const grid::ConformingCells& cells, int other, int side, int a, int b) {
+  constexpr std::array<int, 4> kMirrored{2, -1, -2, 1};  // what a corner's code has more there
+  auto there = [&](int code) {
+    return code < kernels::kFirstCrossing ? code + kMirrored[std::size_t(side)] : code;
+  };
+  int found = -1;
+  for_sides(cells, other, [&](int p, int, int from, int to) {
+    if (from == there(b) && to == there(a)) found = p;
+  });
+  return found;
+}
+
+/// What parts border on: regular cells, and parts with a common piece of a side. A piece between
+/// two held nodes may be a curve's and joins no parts.
 template <class T>
 void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>& to) {
-  std::vector<Link> links;
-  list_borders(from, links);
-  list_common_pieces(from, links);
-  std::ranges::sort(links, {}, &Link::order);
-  to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
   std::vector<std::array<int, 4>> borders;
-  for (const Link& link : links) {
-    ++to.neighbour_begin[std::size_t(link.part) + 1];
-    if (link.other.part < 0)
-      borders.push_back({link.j, link.i, link.part, int(to.neighbour.size())});
-    to.neighbour.push_back(link.other);
-  }
+  to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
+  for_special(from, [&](int c, int i, int j) {
+    const std::array<int, 4> around = cells_around(from, c, i, j);
+    auto held = [&](int code) {
+      return code >= kernels::kFirstCrossing ||
+             from.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
+    };
+    for_sides(from, c, [&](int p, int n, int a, int b) {
+      const int side = side_of(from, i, j, a, b);
+      if (side < 0 || around[std::size_t(side)] == kOutside) return;
+      const bool corners = std::max(a, b) < kernels::kFirstCrossing;
+      int other = -1;
+      if (around[std::size_t(side)] == kRegular) {
+        if (!corners) return;
+        borders.push_back({j + kNorth[std::size_t(side)], i + kEast[std::size_t(side)], p,
+                           int(to.neighbour.size())});
+      } else {
+        if (held(a) && held(b)) return;
+        other = part_across(from, around[std::size_t(side)], side, a, b);
+        if (other < 0) return;
+      }
+      to.neighbour.push_back({other, n, side});
+      ++to.neighbour_begin[std::size_t(p) + 1];
+    });
+  });
   std::ranges::sort(borders);
   to.border_begin.assign(std::size_t(from.ny) + 1, 0);
   for (const auto& [row, column, part, neighbour] : borders) {

@@ -49,6 +49,9 @@ std::vector<std::array<int, 2>> across_soft_curves(const grid::ConformingCells& 
     int part;
     auto operator<=>(const Side&) const = default;
   };
+  const auto soft = [](const grid::HeldNode& node) { return !std::isinf(node.stiffness); };
+  if (!std::ranges::any_of(cells.node, soft) && !std::ranges::any_of(cells.curve_node, soft))
+    return {};
   std::vector<Side> sides;
   const std::int64_t nodes = std::int64_t(cells.nx + 1) * (cells.ny + 1);
   for_special(cells, [&](int c, int i, int j) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "conforming.h"
 #include "conforming_visits.h"
@@ -19,9 +18,11 @@ struct InTriangle {
   double least = -std::numeric_limits<double>::infinity();  ///< of the weights: > 0 inside
 };
 InTriangle find_triangle(const grid::ConformingCells& cells, int c, int j, grid::Point at) {
+  constexpr double kInside = 1e-6;  // in no other triangle then
   InTriangle found;
   for_parts(cells, c, [&](int p) {
     for_triangles(cells, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
+      if (found.least > kInside) return;
       std::array<double, 3> weight{};
       for (std::size_t a = 0; a < 3; ++a)
         weight[a] = grid::dot(triangle.gradient[a], at - cells.rest(c, j, code[(a + 1) % 3]));
@@ -77,23 +78,34 @@ struct FineNode {
 /// Sorted by row, then column.
 std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
                                              const grid::ConformingCells& coarse) {
-  std::vector<FineNode> nodes;
-  for_special(coarse, [&](int c, int I, int J) {
-    for (int j = std::max(2 * J, 1); j <= std::min(2 * J + 2, fine.ny - 1); ++j)
-      for (int i = std::max(2 * I, 1); i <= std::min(2 * I + 2, fine.nx - 1); ++i) {
-        const int held = fine.find_node(i, j);
-        const grid::Point rest =
-            held >= 0 ? fine.node[std::size_t(held)].rest : grid::Point{double(i), double(j)};
-        nodes.push_back({j, i, I, J, find_triangle(coarse, c, J, 0.5 * rest)});
+  std::vector<FineNode> nodes, row;
+  std::vector<std::array<int, 2>> order;  // column, number in `row`
+  for (int j = 1; j < fine.ny; ++j) {
+    row.clear();
+    order.clear();
+    for (int J = (j - 1) / 2; J <= std::min(j / 2, coarse.ny - 1); ++J)
+      for (int c = coarse.cell_begin[std::size_t(J)]; c < coarse.cell_begin[std::size_t(J) + 1];
+           ++c) {
+        const int I = coarse.cell_column[std::size_t(c)];
+        for (int i = std::max(2 * I, 1); i <= std::min(2 * I + 2, fine.nx - 1); ++i) {
+          const int held = fine.find_node(i, j);
+          const grid::Point rest =
+              held >= 0 ? fine.node[std::size_t(held)].rest : grid::Point{double(i), double(j)};
+          order.push_back({i, int(row.size())});
+          row.push_back({j, i, I, J, find_triangle(coarse, c, J, 0.5 * rest)});
+        }
       }
-  });
-  // Where corners have moved, a node between two cells lies in that which it is deepest in.
-  std::ranges::stable_sort(nodes, [](const FineNode& a, const FineNode& b) {
-    return std::tuple(a.j, a.i, -a.place.least) < std::tuple(b.j, b.i, -b.place.least);
-  });
-  const auto doubled = std::ranges::unique(
-      nodes, [](const FineNode& a, const FineNode& b) { return a.j == b.j && a.i == b.i; });
-  nodes.erase(doubled.begin(), doubled.end());
+    std::ranges::sort(order);
+    for (std::size_t n = 0; n < order.size();) {
+      // Where corners have moved, a node between two cells lies in that which it is deepest in.
+      const FineNode* deepest = &row[std::size_t(order[n][1])];
+      for (const int i = order[n][0]; n < order.size() && order[n][0] == i; ++n)
+        if (const FineNode& node = row[std::size_t(order[n][1])];
+            node.place.least > deepest->place.least)
+          deepest = &node;
+      nodes.push_back(*deepest);
+    }
+  }
   return nodes;
 }
 
