@@ -37,8 +37,8 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-programs="speed_bench direct_bench mesh_bench amg_bench warps_bench solve_bench curves_bench rates_bench
-  membranes_bench masks_bench stability_bench resample_bench kernels_bench report"
+programs="speed_bench direct_bench mesh_bench amg_bench warps_bench solve_bench curves_bench drag_bench
+  rates_bench membranes_bench masks_bench stability_bench resample_bench kernels_bench report"
 folder=build/bench
 results=build/report/results
 mkdir -p $results bench/pictures
@@ -92,6 +92,7 @@ if [ "$measure" ]; then
   stage solvers speed_bench solvers
   stage curves curves_bench
   stage solve solve_bench $large
+  stage drag drag_bench
   stage mesh mesh_bench
   stage amg amg_bench ${large:+--all}
   stage warps warps_bench

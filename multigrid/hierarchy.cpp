@@ -278,10 +278,22 @@ void Hierarchy<T>::clear() {
 template <class T>
 void Hierarchy<T>::retarget(const grid::CutCells& cuts) {
   levels_.front().wanted = cuts.wanted;
-  grid::CutCells rows = cuts;
+  // To the last bit as grid::coarsen has them, whose children come in this order.
+  std::vector<double> length = cuts.length;
   for (int l = 0; l + 1 < size(); ++l) {
-    rows = grid::coarsen(rows, (*this)[l].nx, (*this)[l].ny).cuts;
-    (*this)[l + 1].wanted = rows.wanted;
+    const std::vector<int>& parent = (*this)[l].to_coarse.parent;
+    const std::vector<grid::Point>& fine = (*this)[l].wanted;
+    std::vector<grid::Point>& wanted = (*this)[l + 1].wanted;
+    std::vector<double> sum(wanted.size(), 0.0);
+    std::ranges::fill(wanted, grid::Point{});
+    for (std::size_t k = 0; k < fine.size(); ++k) {
+      if (parent[k] < 0) continue;
+      const std::size_t p = std::size_t(parent[k]);
+      sum[p] += length[k];
+      wanted[p] = wanted[p] + length[k] * fine[k];
+    }
+    for (std::size_t p = 0; p < wanted.size(); ++p) wanted[p] = (1.0 / sum[p]) * wanted[p];
+    length = std::move(sum);
   }
 }
 
