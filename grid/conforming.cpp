@@ -44,6 +44,8 @@ class Conformer {
 
   bool assemble();
   std::vector<std::int64_t> special_cells() const;
+  void go_on(CellIndex cell);
+  int held_corner(CellIndex cell, int code) const;
   std::vector<CellVertex> outline(CellIndex cell) const;
   bool add_cell(CellIndex cell, const std::vector<Chord>& chords);
   void list_nodes();
@@ -56,6 +58,8 @@ class Conformer {
   CurveNodes nodes_;
   NodeVisits visits_;
   std::size_t edge_nodes_ = 0;  // curve nodes on edges; the ones in cells follow
+  // Of the cell at hand, in its lower and its upper row: see go_on.
+  std::array<std::size_t, 2> held_at_{}, edge_at_{};
   ConformingCells cells_;
 };
 
@@ -63,6 +67,7 @@ class Conformer {
 bool Conformer::assemble() {
   nodes_ = place_nodes(walks_, weights_, lattice_, options_.snap, simplified_);
   edge_nodes_ = nodes_.edge.size();
+  held_at_ = edge_at_ = {};
   cells_ = {};
   cells_.nx = lattice_.nx;
   cells_.ny = lattice_.ny;
@@ -76,6 +81,7 @@ bool Conformer::assemble() {
     const CellIndex cell{int(number % lattice_.nx), int(number / lattice_.nx)};
     for (inside.clear(); next != chords.end() && cell_number(next->cell) <= number; ++next)
       inside.push_back(*next);
+    go_on(cell);
     if (add_cell(cell, inside)) continue;
     good = false;
     Simplified& level = simplified_[number];
@@ -111,24 +117,48 @@ std::vector<std::int64_t> Conformer::special_cells() const {
   return numbers;
 }
 
+/// Special cells come in order, and so does what is looked for: index of the first value that is
+/// not below `wanted`, going on from `from`.
+template <class Value>
+std::size_t go_to(const std::vector<Value>& values, std::size_t end, std::size_t from,
+                  Value wanted) {
+  while (from < end && values[from] < wanted) ++from;
+  return from;
+}
+
+/// Moves the places in the lists of held nodes and of nodes on edges on to those of a cell.
+void Conformer::go_on(CellIndex cell) {
+  const Vertex low = lattice_node(cell.i, cell.j), high = lattice_node(cell.i, cell.j + 1);
+  held_at_ = {go_to(nodes_.held, nodes_.held.size(), held_at_[0], low),
+              go_to(nodes_.held, nodes_.held.size(), held_at_[1], high)};
+  edge_at_ = {go_to(nodes_.edge, edge_nodes_, edge_at_[0], 2 * low),
+              go_to(nodes_.edge, edge_nodes_, edge_at_[1], 2 * high)};
+}
+
+/// Number in the list of held nodes of a corner of the cell that `go_on` went to, −1: not held.
+int Conformer::held_corner(CellIndex cell, int code) const {
+  const Vertex node = lattice_node(cell.i + (code & 1), cell.j + (code >> 1));
+  const std::size_t at =
+      go_to(nodes_.held, nodes_.held.size(), held_at_[std::size_t(code >> 1)], node);
+  return at < nodes_.held.size() && nodes_.held[at] == node ? int(at) : -1;
+}
+
 std::vector<CellVertex> Conformer::outline(CellIndex cell) const {
   std::vector<CellVertex> vertices;
+  vertices.reserve(8);
   auto corner = [&](int code, unsigned sides) {
     const int i = cell.i + (code & 1), j = cell.j + (code >> 1);
-    const int held = nodes_.find_held(lattice_node(i, j));
+    const int held = held_corner(cell, code);
     const Point rest = held < 0 ? Point{double(i), double(j)} : nodes_.held_rest[std::size_t(held)];
     const bool edge = i == 0 || j == 0 || i == lattice_.nx || j == lattice_.ny;
     vertices.push_back({lattice_node(i, j), code, rest, sides, held >= 0 || edge});
   };
-  const auto end = nodes_.edge.begin() + std::ptrdiff_t(edge_nodes_);
   auto side = [&](EdgeIndex edge, unsigned bit, bool backwards) {
-    const auto [from, to] = std::equal_range(nodes_.edge.begin(), end, edge);
     const std::size_t first = vertices.size();
-    for (auto at = from; at != to; ++at) {
-      const std::size_t k = std::size_t(at - nodes_.edge.begin());
+    for (std::size_t k = go_to(nodes_.edge, edge_nodes_, edge_at_[bit == 4], edge);
+         k < edge_nodes_ && nodes_.edge[k] == edge; ++k)
       vertices.push_back(
           {first_curve_node() + Vertex(k), 4 + int(k), nodes_.curve_rest[k], bit, true});
-    }
     if (backwards) std::reverse(vertices.begin() + std::ptrdiff_t(first), vertices.end());
   };
   const Vertex node = lattice_node(cell.i, cell.j);
@@ -174,7 +204,7 @@ bool Conformer::add_cell(CellIndex cell, const std::vector<Chord>& chords) {
   }
   std::array<int, 4> held{};
   for (const CellVertex& v : corners)
-    if (v.code < 4) held[std::size_t(v.code)] = nodes_.find_held(v.vertex);
+    if (v.code < 4) held[std::size_t(v.code)] = held_corner(cell, v.code);
   cells_.cell_corner.push_back(held);
   cells_.cell_column.push_back(cell.i);
   cells_.part_begin.push_back(cells_.parts());

@@ -102,19 +102,21 @@ void share_pressures(ConformingCells& cells, double least_area) {
 int ConformingCells::part_at(int c, Point at) const {
   const int j = int(std::ranges::upper_bound(cell_begin, c) - cell_begin.begin()) - 1;
   int nearest = part_begin[std::size_t(c)];
-  double best = -1e300;  // the least barycentric coordinate: how far inside the triangle
+  double best = -1e300;             // the least barycentric coordinate: how far inside the triangle
+  constexpr double kInside = 1e-6;  // in no other triangle then
   for (int p = part_begin[std::size_t(c)]; p < part_begin[std::size_t(c) + 1]; ++p)
     for (int t = part_triangle_begin[std::size_t(p)]; t < part_triangle_begin[std::size_t(p) + 1];
          ++t) {
       const PartTriangle& tri = triangle[std::size_t(t)];
       double least = 1.0;
-      for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t n = 0; n < 3 && least > best; ++n) {
         const int code = part_node[std::size_t(part_node_begin[std::size_t(p)] + tri.node[n])];
         least = std::min(least, 1.0 + dot(tri.gradient[n], at - rest(c, j, code)));
       }
       if (least <= best) continue;
       best = least;
       nearest = p;
+      if (best > kInside) return p;
     }
   return nearest;
 }

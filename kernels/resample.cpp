@@ -148,28 +148,36 @@ struct InTriangle {
   double inside = -std::numeric_limits<double>::infinity();
   Position displacement;
 };
-InTriangle nearest_triangle(const LatticeMapView& map, int i, int j, Position rest) {
+/// Takes a triangle of special cell c that `rest` is deeper in than in `best`.
+void find_deepest(const SplitCellsView& split, int c, Position rest, InTriangle& best) {
+  for (int n = split.triangle_begin[c]; n < split.triangle_begin[c + 1]; ++n) {
+    const MapTriangle& triangle = split.triangle[n];
+    const Position *r = triangle.rest, *d = triangle.displacement;
+    const Position p{r[1].x - r[0].x, r[1].y - r[0].y}, q{r[2].x - r[0].x, r[2].y - r[0].y};
+    const Position h{rest.x - r[0].x, rest.y - r[0].y};
+    const double area = p.x * q.y - p.y * q.x;
+    const double s = (h.x * q.y - h.y * q.x) / area, t = (p.x * h.y - p.y * h.x) / area;
+    const double inside = std::min(std::min(s, t), 1.0 - s - t);
+    if (!(inside > best.inside)) continue;
+    best.inside = inside;
+    best.displacement = {d[0].x + s * (d[1].x - d[0].x) + t * (d[2].x - d[0].x),
+                         d[0].y + s * (d[1].y - d[0].y) + t * (d[2].y - d[0].y)};
+  }
+}
+
+/// Of special cell `own` at (i, j), −1 where that is bilinear, and the special cells around it.
+InTriangle nearest_triangle(const LatticeMapView& map, int own, int i, int j, Position rest) {
+  constexpr double kClearly = 1e-6;  // in no other triangle then
   InTriangle best;
   const SplitCellsView& split = map.split;
+  if (own >= 0) find_deepest(split, own, rest, best);
+  if (best.inside > kClearly) return best;
+  best = {};
   for (int row = std::max(0, j - 1); row <= std::min(map.ny - 1, j + 1); ++row) {
     const int *begin = split.column + split.row_begin[row],
               *end = split.column + split.row_begin[row + 1];
-    for (const int* at = std::lower_bound(begin, end, i - 1); at != end && *at <= i + 1; ++at) {
-      const int c = int(at - split.column);
-      for (int n = split.triangle_begin[c]; n < split.triangle_begin[c + 1]; ++n) {
-        const MapTriangle& triangle = split.triangle[n];
-        const Position *r = triangle.rest, *d = triangle.displacement;
-        const Position p{r[1].x - r[0].x, r[1].y - r[0].y}, q{r[2].x - r[0].x, r[2].y - r[0].y};
-        const Position h{rest.x - r[0].x, rest.y - r[0].y};
-        const double area = p.x * q.y - p.y * q.x;
-        const double s = (h.x * q.y - h.y * q.x) / area, t = (p.x * h.y - p.y * h.x) / area;
-        const double inside = std::min(std::min(s, t), 1.0 - s - t);
-        if (!(inside > best.inside)) continue;
-        best.inside = inside;
-        best.displacement = {d[0].x + s * (d[1].x - d[0].x) + t * (d[2].x - d[0].x),
-                             d[0].y + s * (d[1].y - d[0].y) + t * (d[2].y - d[0].y)};
-      }
-    }
+    for (const int* at = std::lower_bound(begin, end, i - 1); at != end && *at <= i + 1; ++at)
+      find_deepest(split, int(at - split.column), rest, best);
   }
   return best;
 }
@@ -180,9 +188,10 @@ Position position_in(const LatticeMapView& map, Position rest_px) {
   if (!(s >= 0.0 && s <= map.nx && t >= 0.0 && t <= map.ny)) return rest_px;
   const int i = std::min(int(s), map.nx - 1), j = std::min(int(t), map.ny - 1);
   if (map.split.row_begin) {
-    const InTriangle best = nearest_triangle(map, i, j, rest_px);
+    const int own = map.split.find(i, j);
+    const InTriangle best = nearest_triangle(map, own, i, j, rest_px);
     // Where cell (i, j) is bilinear the point may still lie in a triangle of the next one.
-    if (best.inside >= -1e-9 || map.split.find(i, j) >= 0)
+    if (best.inside >= -1e-9 || own >= 0)
       return {rest_px.x + best.displacement.x, rest_px.y + best.displacement.y};
   }
   const double fs = s - i, ft = t - j;

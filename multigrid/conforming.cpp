@@ -162,6 +162,10 @@ kernels::SpecialCells<T> special_cells(const grid::ConformingCells& from, T spac
   kernels::SpecialCells<T> to;
   to.row_begin = from.cell_begin;
   to.part_begin = to.triangle_begin = to.vertex_begin = {0};
+  to.column.reserve(from.cell_column.size());
+  to.triangle.reserve(from.triangle.size());
+  to.vertex.reserve(from.part_node.size());
+  to.area.reserve(from.part_area.size());
   for_special(from, [&](int c, int i, int j) { add_cell(from, c, i, j, spacing, to); });
   set_targets(from, spacing, to);
   list_neighbours(from, to);

@@ -24,10 +24,11 @@ InTriangle find_triangle(const grid::ConformingCells& cells, int c, int j, grid:
     for_triangles(cells, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
       if (found.least > kInside) return;
       std::array<double, 3> weight{};
-      for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t a = 0; a < 3; ++a) {
         weight[a] = grid::dot(triangle.gradient[a], at - cells.rest(c, j, code[(a + 1) % 3]));
-      const double least = *std::ranges::min_element(weight);
-      if (least > found.least) found = {code, weight, least};
+        if (!(weight[a] > found.least)) return;
+      }
+      found = {code, weight, *std::ranges::min_element(weight)};
     });
   });
   return found;
@@ -50,20 +51,18 @@ void list_pairs(const grid::ConformingCells& fine, const grid::ConformingCells& 
     typename kernels::SpecialTransfer<T>::Pair pair;
   };
   std::vector<Row> rows;
-  auto coarse_part = [&](int i, int j, grid::Point centre) {
-    const int parent = coarse.find_cell(i / 2, j / 2);
-    return parent < 0 ? ~(i / 2) : coarse.part_at(parent, 0.5 * centre);
-  };
   for_special(fine, [&](int c, int i, int j) {
+    const int parent = coarse.find_cell(i / 2, j / 2);
     for_parts(fine, c, [&](int p) {
-      rows.push_back({j, {p, coarse_part(i, j, fine.part_centre[std::size_t(p)])}});
+      const grid::Point centre = 0.5 * fine.part_centre[std::size_t(p)];
+      rows.push_back({j, {p, parent < 0 ? ~(i / 2) : coarse.part_at(parent, centre)}});
     });
   });
-  for_special(coarse, [&](int, int I, int J) {
+  for_special(coarse, [&](int parent, int I, int J) {
     for (int j = 2 * J; j < std::min(2 * J + 2, fine.ny); ++j)
       for (int i = 2 * I; i < std::min(2 * I + 2, fine.nx); ++i)
         if (fine.find_cell(i, j) < 0)
-          rows.push_back({j, {~i, coarse_part(i, j, {i + 0.5, j + 0.5})}});
+          rows.push_back({j, {~i, coarse.part_at(parent, {0.5 * (i + 0.5), 0.5 * (j + 0.5)})}});
   });
   std::ranges::stable_sort(rows, {}, &Row::j);
   for (const Row& row : rows) transfer.pair.push_back(row.pair);

@@ -78,6 +78,9 @@ void export_state(const Hierarchy<T>& hierarchy, Solution& solution) {
   const Level<T>& level = hierarchy[0];
   const double h = solution.lattice.cell_px;
   const auto ux = level.ux.view(), uy = level.uy.view(), p = level.pressure.view();
+  solution.u_px.reserve(level.nodes());
+  solution.v_px.reserve(level.nodes());
+  solution.pressure.reserve(p ? solution.lattice.cells() : 0);
   for (int j = 0; j <= level.ny; ++j)
     for (int i = 0; i <= level.nx; ++i) {
       solution.u_px.push_back(h * double(ux.at(i, j)));
