@@ -182,8 +182,8 @@ ConformingLevel<T>::ConformingLevel(grid::ConformingCells from, T spacing)
       regions(geometry, cells) {}
 
 template <class T>
-void ConformingLevel<T>::retarget(const grid::ConformingCells& other, T spacing) {
-  set_targets(other, spacing, cells);
+void ConformingLevel<T>::retarget(T spacing) {
+  set_targets(geometry, spacing, cells);
 }
 
 template <class T>

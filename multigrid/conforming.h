@@ -34,8 +34,8 @@ struct ConformingLevel {
 
   /// Values that the curve nodes add to a correction: two each if any of them is on a soft curve.
   std::size_t curve_unknowns() const;
-  /// Takes the targets of other curves with the same sources; soft nodes stay as far off.
-  void retarget(const grid::ConformingCells& other, T spacing);
+  /// Takes the targets that `geometry` has now; soft nodes stay as far off.
+  void retarget(T spacing);
   /// No pressures, and held nodes, whose planes are these, at their targets.
   void clear(const kernels::Plane<T>& ux, const kernels::Plane<T>& uy);
   std::size_t bytes() const;

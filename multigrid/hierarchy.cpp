@@ -259,18 +259,6 @@ void Hierarchy<T>::conform(std::vector<grid::ConformingCells> cells, grid::Memor
 }
 
 template <class T>
-void Hierarchy<T>::retarget(const std::vector<grid::CurvePair>& curves,
-                            const grid::Lattice& lattice, int top) {
-  const std::vector<grid::ConformingCells> cells =
-      grid::conform_levels(curves, lattice, size(), kConform);
-  for (int l = top; l < size(); ++l) {
-    Level<T>& level = (*this)[l];
-    level.conforming->retarget(cells[std::size_t(l)], level.spacing);
-    set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
-  }
-}
-
-template <class T>
 void Hierarchy<T>::clear() {
   for (Level<T>& level : levels_) level.clear(law_);
 }
@@ -298,11 +286,12 @@ void Hierarchy<T>::retarget(const grid::CutCells& cuts) {
 }
 
 template <class T>
-void Hierarchy<T>::retarget(grid::CurveConformer& conformer) {
-  for (int l = 0; l < size(); ++l) {
+void Hierarchy<T>::retarget(grid::CurveConformer& conformer, int top) {
+  for (int l = top; l < size(); ++l) {
     Level<T>& level = (*this)[l];
     conformer.retarget(l, level.conforming->geometry);
-    level.conforming->retarget(level.conforming->geometry, level.spacing);
+    level.conforming->retarget(level.spacing);
+    set_held<T>(*level.conforming, level.ux.view(), level.uy.view());
   }
 }
 

@@ -29,12 +29,11 @@ class Hierarchy {
   void clear();
   /// Takes the wanted displacements of cuts that are otherwise the ones it was made of.
   void retarget(const grid::CutCells& cuts);
-  /// Takes the targets that the curves of its cells have now.
-  void retarget(grid::CurveConformer& conformer);
+  /// Takes the targets that the curves of its cells have now on level `top` and all coarser ones,
+  /// into the state too.
+  void retarget(grid::CurveConformer& conformer, int top);
   /// Wanted displacements of level l from those of the finest level's cuts, averaged as the cuts.
   void set_wanted(int l, std::vector<grid::Point> wanted);
-  /// Other targets of the same sources on level `top` and all coarser ones, into the state too.
-  void retarget(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice, int top);
   bool conforming() const { return levels_.front().conforming != nullptr; }
 
   int size() const { return int(levels_.size()); }

@@ -59,6 +59,21 @@ double largest_turn(const std::vector<grid::CurvePair>& curves) {
   return largest;
 }
 
+std::vector<grid::CurvePair> one_to_one(const std::vector<grid::CurvePair>& curves) {
+  std::vector<grid::CurvePair> out = curves;
+  for (grid::CurvePair& curve : out) {
+    if (grid::one_to_one(curve)) continue;
+    const std::vector<grid::SegmentPair> pairs = grid::matched(curve);
+    curve.source.clear();
+    curve.target.clear();
+    for (const grid::SegmentPair& pair : pairs) {
+      curve.source.push_back(pair.source);
+      curve.target.push_back(pair.target);
+    }
+  }
+  return out;
+}
+
 std::vector<grid::CurvePair> partway(const std::vector<grid::CurvePair>& curves, double t) {
   std::vector<grid::CurvePair> out;
   for (const grid::CurvePair& curve : curves) {

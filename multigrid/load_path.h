@@ -17,6 +17,9 @@ double turning_angle(const grid::CurvePair& curve);
 /// Largest |turning_angle| of the curves.
 double largest_turn(const std::vector<grid::CurvePair>& curves);
 
+/// The curves with targets of as many segments as their sources (grid::matched).
+std::vector<grid::CurvePair> one_to_one(const std::vector<grid::CurvePair>& curves);
+
 /// The curves with targets at share t of the way, 0…1; at 1 the targets themselves.
 std::vector<grid::CurvePair> partway(const std::vector<grid::CurvePair>& curves, double t);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene_levels.h"
 
+#include <cassert>
 #include <type_traits>
 #include <utility>
 
@@ -66,11 +67,22 @@ void SceneLevels<T>::conform_again(const std::vector<grid::CurvePair>& curves) {
   if (!conformer_) conformer_ = hierarchy_->make_conformer(key_.lattice);
   std::vector<grid::ConformingCells> cells = conformer_->conform(curves);
   if (cells.empty()) {
-    hierarchy_->retarget(*conformer_);
+    hierarchy_->retarget(*conformer_, 0);
     return hierarchy_->clear();
   }
   if (hierarchy_->conforming()) build(grid::cut({}, key_.lattice, key_.most_weight));
   hierarchy_->conform(std::move(cells), meter_);
+}
+
+template <class T>
+void SceneLevels<T>::set_targets(const std::vector<grid::CurvePair>& curves, int top) {
+  if (!key_.conforming) {
+    hierarchy_->set_wanted(top, grid::cut(curves, key_.lattice, key_.most_weight).wanted);
+    return;
+  }
+  [[maybe_unused]] const bool same = conformer_->conform(curves).empty();
+  assert(same);
+  hierarchy_->retarget(*conformer_, top);
 }
 
 template <class T>

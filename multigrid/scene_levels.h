@@ -31,6 +31,10 @@ class SceneLevels {
   /// Lays out one scene after another. The levels are as `lay_out` makes them.
   void lay_out_again(const std::vector<grid::CurvePair>& curves);
 
+  /// Conforming cells: after lay_out_again. Other targets for a while, on level `top` and, where
+  /// they need them, on coarser ones.
+  void set_targets(const std::vector<grid::CurvePair>& curves, int top);
+
   /// Those of the last scene.
   Hierarchy<T>& hierarchy() { return *hierarchy_; }
   const grid::CutCells& cuts() const { return cuts_; }

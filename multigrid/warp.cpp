@@ -188,10 +188,16 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const bool keep = options.kept != nullptr && !options.exact;
   SceneLevels<T>& levels =
       keep ? options.kept->contents().levels<T>(std::move(key)) : own.emplace(std::move(key));
-  if (keep)
-    levels.lay_out_again(problem.curves);
+  const bool path = largest_turn(problem.curves) > kLoadPathTurn;
+  // Conforming cells take other targets where their sources are the same to the last bit.
+  const bool retargets = path && levels.key().conforming;
+  const std::vector<grid::CurvePair> paired =
+      retargets ? one_to_one(problem.curves) : std::vector<grid::CurvePair>{};
+  const std::vector<grid::CurvePair>& curves = retargets ? paired : problem.curves;
+  if (keep || retargets)
+    levels.lay_out_again(curves);
   else
-    levels.lay_out(problem.curves);
+    levels.lay_out(curves);
   Hierarchy<T>& hierarchy = levels.hierarchy();
   const grid::CutCells& cuts = levels.cuts();
   const grid::Material& material = levels.key().material;
@@ -204,15 +210,9 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   NestedOptions nested = nested_options(problem, options, material);
   if (options.exact && levels.key().traits.pressure)
     nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
-  if (largest_turn(problem.curves) > kLoadPathTurn)
-    nested.set_targets = [&](int start, double t) {
-      const std::vector<grid::CurvePair> curves =
-          t < 1.0 ? partway(problem.curves, t) : problem.curves;
-      if (conforming)
-        hierarchy.retarget(curves, problem.lattice, start);
-      else
-        hierarchy.set_wanted(start,
-                             grid::cut(curves, problem.lattice, levels.key().most_weight).wanted);
+  if (path)
+    nested.set_targets = [&](int top, double t) {
+      levels.set_targets(t < 1.0 ? partway(curves, t) : curves, top);
     };
   if (!options.start || options.exact ||
       options.start->report.curve_method != options.curve_method ||

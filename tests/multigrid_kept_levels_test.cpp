@@ -187,6 +187,10 @@ TEST(KeptLevelsTest, ALoadPathLeavesNoTrace) {
     WarpProblem problem = scene(std::numeric_limits<double>::infinity());
     problem.curves[2].target = circle({351.0, 402.0}, 90.0, 2.3);
     problem.curves[2].turn_degrees = 2.3 * 180.0 / 3.14159265358979;
+    // One segment in two: sources and targets correspond by arc length.
+    const grid::CubicBezier whole = problem.curves[2].target[1];
+    problem.curves[2].target[1] = whole.piece(0.0, 0.5);
+    problem.curves[2].target.insert(problem.curves[2].target.begin() + 2, whole.piece(0.5, 1.0));
     KeptLevels kept;
     const Solution first = solve_both_ways(problem, {.curve_method = method}, kept);
     int steps = 0;
