@@ -148,6 +148,9 @@ struct InTriangle {
   double inside = -std::numeric_limits<double>::infinity();
   Position displacement;
 };
+// A point that is so deep in a triangle, as a share of its height, is in no other one.
+constexpr double kClearly = 1e-6;
+
 /// Takes a triangle of special cell c that `rest` is deeper in than in `best`.
 void find_deepest(const SplitCellsView& split, int c, Position rest, InTriangle& best) {
   for (int n = split.triangle_begin[c]; n < split.triangle_begin[c + 1]; ++n) {
@@ -162,12 +165,12 @@ void find_deepest(const SplitCellsView& split, int c, Position rest, InTriangle&
     best.inside = inside;
     best.displacement = {d[0].x + s * (d[1].x - d[0].x) + t * (d[2].x - d[0].x),
                          d[0].y + s * (d[1].y - d[0].y) + t * (d[2].y - d[0].y)};
+    if (inside > kClearly) return;
   }
 }
 
 /// Of special cell `own` at (i, j), −1 where that is bilinear, and the special cells around it.
 InTriangle nearest_triangle(const LatticeMapView& map, int own, int i, int j, Position rest) {
-  constexpr double kClearly = 1e-6;  // in no other triangle then
   InTriangle best;
   const SplitCellsView& split = map.split;
   if (own >= 0) find_deepest(split, own, rest, best);

@@ -63,9 +63,12 @@ double triangle_J(const kernels::MapTriangle& triangle) {
   return after / before;
 }
 
-CellJ cell_J(const Solution& s, int i, int j) {
-  const kernels::SplitCellsView split = s.split.view();
-  if (const int c = split.find(i, j); c >= 0) {
+namespace {
+
+/// Of cell (i, j), which is split cell c; c −1: it is bilinear.
+CellJ cell_J(const Solution& s, int i, int j, int c) {
+  if (c >= 0) {
+    const kernels::SplitCellsView split = s.split.view();
     double rest = 0.0, moved = 0.0, least = std::numeric_limits<double>::infinity();
     for (int t = split.triangle_begin[c]; t < split.triangle_begin[c + 1]; ++t) {
       const auto [before, after] = areas(split.triangle[t]);
@@ -86,8 +89,6 @@ CellJ cell_J(const Solution& s, int i, int j) {
           std::min({grid::cross(p10 - p00, p01 - p00), grid::cross(p10 - p00, p11 - p10),
                     grid::cross(p11 - p01, p01 - p00), grid::cross(p11 - p01, p11 - p10)})};
 }
-
-namespace {
 
 /// The rest centre of a folded cell, of a split one that of its most inverted triangle.
 grid::Point fold_place(const Solution& s, int i, int j) {
@@ -110,12 +111,17 @@ grid::Point fold_place(const Solution& s, int i, int j) {
 
 }  // namespace
 
+CellJ cell_J(const Solution& s, int i, int j) { return cell_J(s, i, j, s.split.view().find(i, j)); }
+
 FoldReport find_folds(const Solution& s) {
   FoldReport folds;
   folds.min_J = folds.min_corner_J = 1.0;
+  std::size_t next = 0;  // split cell
   for (int j = 0; j < s.lattice.ny; ++j)
     for (int i = 0; i < s.lattice.nx; ++i) {
-      const auto [centre, least] = cell_J(s, i, j);
+      const bool split = next < s.split.column.size() && s.split.column[next] == i &&
+                         int(next) < s.split.row_begin[std::size_t(j) + 1];
+      const auto [centre, least] = cell_J(s, i, j, split ? int(next++) : -1);
       folds.min_J = std::min(folds.min_J, centre);
       folds.min_corner_J = std::min(folds.min_corner_J, least);
       folds.inverted_cells += centre < 0.0;

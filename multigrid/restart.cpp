@@ -18,6 +18,8 @@ constexpr int kMostSteps = 15;
 constexpr double kShare = 0.1;
 // Residual that ends the cycles of one step: the first one has most of the change to carry.
 constexpr double kContent = 0.5;
+// Distance inside a triangle, in cells.
+constexpr double kClearly = 1e-6;
 // A small change is nearly linear: what the first step leaves is what its linear solution leaves.
 constexpr double kFirstRate = 0.35;
 
@@ -86,10 +88,12 @@ double pressure_at(const Solution& start, int i, int j, grid::Point at_px) {
                               b = split.triangle[t].rest[(k + 1) % 3];
       const grid::Point side{b.x - a.x, b.y - a.y};
       least = std::min(least, grid::cross(side, at_px - grid::Point{a.x, a.y}) / length(side));
+      if (least <= most) break;
     }
     if (least <= most) continue;
     most = least;
     nearest = t;
+    if (least > kClearly * start.lattice.cell_px) break;  // in no other one then
   }
   return start.split.pressure[std::size_t(nearest)];
 }
