@@ -14,8 +14,9 @@
 //     rms_px, max_px           error at the nodes (truth.h)
 //     difference_px            RMS from drumhead's solution to a thousandth of the tolerance
 //
-//   amg_bench [--all]      GAMG to 200², at kappa/mu 100 to 100²; BoomerAMG half as far, kappa/mu
-//                          100 not at all; --all: everything to 400²
+//   amg_bench [--large] [--truth FOLDER]     lattices to 200², BoomerAMG to 100²; --large: to 400².
+//                          At kappa/mu 100 GAMG to half of that and BoomerAMG to 100² with --large
+//                          alone: the next lattice takes minutes.
 #include <cstdio>
 #include <string_view>
 
@@ -34,7 +35,7 @@ constexpr int kRepeats = 3;
 struct Case {
   scenes::Scene scene;
   double kappa;
-  Truth truth = Truth(scene, kappa);
+  Truth truth;
 };
 
 /// Whether AMG's solution is drumhead's.
@@ -92,29 +93,47 @@ multigrid::Solution run_drumhead(const Case& c, int n, Results& results) {
   return multigrid::solve(problem, options);
 }
 
+/// The largest lattice that `amg` is asked to solve.
+int most_cells(Amg amg, double kappa, bool large) {
+  if (amg == Amg::gamg) return (large ? 400 : 200) / (kappa < 100.0 ? 1 : 2);
+  return kappa < 100.0 ? (large ? 400 : 100) : (large ? 100 : 0);
+}
+
 }  // namespace
 }  // namespace drumhead::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace drumhead;
-  const bool all = argc == 2 && std::string_view(argv[1]) == "--all";
-  if (argc > 1 && !all) {
-    std::fprintf(stderr, "usage: amg_bench [--all]\n");
-    return 2;
+  bool large = false;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    if (word == "--large") {
+      large = true;
+    } else if (word == "--truth" && k + 1 < argc) {
+      ++k;
+    } else {
+      std::fputs("usage: amg_bench [--large] [--truth FOLDER]\n", stderr);
+      return 2;
+    }
   }
   bench::Results results(argc, argv);
+  const std::string folder = bench::truth_folder(argc, argv);
   const double offset = scenes::kStudyOffset;
   const scenes::Scene s2 = scenes::roundabout(90.0, offset);
   bool right = true;
-  for (const bench::Case& c : {bench::Case{scenes::sponge(offset), 1.0}, bench::Case{s2, 10.0},
-                               bench::Case{scenes::shift(offset), 10.0}, bench::Case{s2, 100.0}}) {
-    const int largest = all ? 400 : c.kappa < 100.0 ? 200 : 100;
-    for (int n = 100; n <= largest; n *= 2) {
+  for (const auto& [scene, kappa] :
+       {std::pair{scenes::sponge(offset), 1.0}, std::pair{s2, 10.0},
+        std::pair{scenes::shift(offset), 10.0}, std::pair{s2, 100.0}}) {
+    const bench::Case c{scene, kappa, bench::Truth(scene, kappa, folder)};
+    for (int n = 100; n <= bench::most_cells(bench::Amg::gamg, kappa, large); n *= 2) {
       const multigrid::Solution exact = bench::run_drumhead(c, n, results);
-      right &= bench::run_amg(c, n, bench::Amg::gamg, exact, results);
-      if (all || (2 * n <= largest && c.kappa < 100.0))
-        right &= bench::run_amg(c, n, bench::Amg::boomeramg, exact, results);
+      for (const bench::Amg amg : {bench::Amg::gamg, bench::Amg::boomeramg})
+        if (n <= bench::most_cells(amg, kappa, large))
+          right &= bench::run_amg(c, n, amg, exact, results);
     }
   }
   return right ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "amg_bench: %s\n", error.what());
+  return 1;
 }

@@ -3,6 +3,7 @@
 // lattice; the seconds in which errors of 1, 0.3, 0.1 and 0.03 px are reached on any of the
 // lattices; and what the list of special cells adds to a product. One thread, default tolerance,
 // best of three.
+//   curves_bench [--truth FOLDER]      the folder (truth.h) is for the sponge alone
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,8 +43,8 @@ multigrid::Solution fastest(const multigrid::WarpProblem& problem, CurveMethod c
   return best;
 }
 
-void run(const scenes::Scene& scene, double kappa, Results& results) {
-  const Truth truth(scene, kappa);
+void run(const scenes::Scene& scene, double kappa, const std::string& folder, Results& results) {
+  const Truth truth(scene, kappa, folder);
   for (const CurveMethod curves : {CurveMethod::averaged, CurveMethod::conforming}) {
     const Json keys = joined(keys_of(scene, kappa), {{"curves", multigrid::name(curves)}});
     std::array<double, kTargets.size()> seconds{};
@@ -99,12 +100,12 @@ void list_share(const scenes::Scene& scene, double kappa, int n, Results& result
                                              {"share", 1.0 - seconds[0] / seconds[1]}}));
 }
 
-void run_all(Results& results) {
+void run_all(const std::string& folder, Results& results) {
   const double offset = scenes::kStudyOffset;
   const scenes::Scene roundabout = scenes::roundabout(90.0, offset), shift = scenes::shift(offset);
-  for (const double kappa : {1.0, 10.0, 100.0, 1e4}) run(roundabout, kappa, results);
-  for (const double kappa : {1.0, 10.0, 100.0}) run(shift, kappa, results);
-  run(scenes::sponge(offset), 1.0, results);
+  for (const double kappa : {1.0, 10.0, 100.0, 1e4}) run(roundabout, kappa, {}, results);
+  for (const double kappa : {1.0, 10.0, 100.0}) run(shift, kappa, {}, results);
+  run(scenes::sponge(offset), 1.0, folder, results);
   const kernels::ThreadLimit one(1);
   for (const scenes::Scene& scene : {scenes::sponge(offset), roundabout, shift})
     list_share(scene, 10.0, 400, results);
@@ -114,8 +115,14 @@ void run_all(Results& results) {
 }  // namespace drumhead::bench
 
 int main(int argc, char** argv) try {
-  drumhead::bench::Results results(argc, argv);
-  drumhead::bench::run_all(results);
+  using namespace drumhead::bench;
+  const std::string folder = truth_folder(argc, argv);
+  if (argc > 1 && (folder.empty() || argc > 3)) {
+    std::fputs("usage: curves_bench [--truth FOLDER]\n", stderr);
+    return 2;
+  }
+  Results results(argc, argv);
+  run_all(folder, results);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "curves_bench: %s\n", error.what());

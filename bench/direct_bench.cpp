@@ -3,7 +3,7 @@
 // drumhead's: same lattice, energy, curve rows, q-jump, start and stopping rule, in one run, as
 // rows of JSON (results.h). The matrix and its cut cells are the tests' oracle; the time of its
 // assembly, which is not tuned, is listed apart and left out of `seconds`.
-//   direct_bench [--sponge] [--threads N] [CELLS…]
+//   direct_bench [--sponge] [--threads N] [--truth FOLDER] [CELLS…]
 // --sponge: that scene alone. CELLS: lattices, 50 100 200 if not given, even from 64 on; 800 takes
 // some GB and minutes.
 #include <cstdio>
@@ -83,11 +83,17 @@ int main(int argc, char** argv) try {
       all = false;
       continue;
     }
+    if (word == "--truth") {
+      ++k;
+      continue;
+    }
     const bool is_threads = word == "--threads" && k + 1 < argc;
     const int number = std::atoi(argv[is_threads ? ++k : k]);
     if (is_threads ? number < 1 : number < 32 || (number >= 64 && number % 2)) {
-      std::fputs("usage: direct_bench [--sponge] [--threads N] [CELLS…]    CELLS even from 64 on\n",
-                 stderr);
+      std::fputs(
+          "usage: direct_bench [--sponge] [--threads N] [--truth FOLDER] [CELLS…]\n"
+          "       CELLS even from 64 on\n",
+          stderr);
       return 2;
     }
     if (is_threads)
@@ -102,9 +108,10 @@ int main(int argc, char** argv) try {
     cases.push_back({scenes::roundabout(90.0, offset), 10.0});
     cases.push_back({scenes::shift(offset), 10.0});
   }
+  const std::string folder = bench::truth_folder(argc, argv);
   bench::Results results(argc, argv);
   for (const auto& [scene, kappa] : cases) {
-    const bench::Case c{scene, kappa, bench::Truth(scene, kappa)};
+    const bench::Case c{scene, kappa, bench::Truth(scene, kappa, folder)};
     for (const int n : lattices)
       for (const auto& solver : bench::direct_solvers())
         bench::run(c, *solver, n, threads, results);

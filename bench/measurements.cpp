@@ -125,7 +125,7 @@ std::string figure(double value) {
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
   const double size = std::abs(value);
   char buffer[40];
-  if (size >= 1e6 || (size > 0.0 && size < 1e-3))
+  if (size >= 1e6 || (size > 0.0 && size < 1e-4))
     std::snprintf(buffer, sizeof buffer, "%.1e", value);
   else
     std::snprintf(buffer, sizeof buffer, size >= 100.0 ? "%.0f" : "%.3g", value);

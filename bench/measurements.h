@@ -47,7 +47,7 @@ bool is_ours(const Json& row);
 /// Lines of a text that name each different value once, in the order met.
 std::vector<std::string> distinct(const Rows& rows, const std::function<std::string(const Json&)>&);
 
-/// A number as people read it: three digits, no exponent between 1e-3 and 1e6; "–" for NaN.
+/// A number as people read it: three digits, no exponent between 1e-4 and 1e6; "–" for NaN.
 std::string figure(double value);
 
 }  // namespace drumhead::bench

@@ -10,22 +10,25 @@
 //                              solve_seconds (analyse once a mesh, factorise, solve)
 //     bytes                    of the solver at its peak; of the mesh CHOLMOD's
 //     rms_px, max_px           over vertices or nodes; S2 against its exact radial solution, S1
-//                              against drumhead, conforming, on `reference` cells
+//                              against drumhead, conforming (truth.h)
 //     folded                   triangles, cells
 //
-//   mesh_bench [N…]            default 100 200 400; even, at least 32
+//   mesh_bench [--truth FOLDER] [N…]     default 100 200 400; even, at least 32
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <memory>
+#include <string_view>
 
 #include "mesh_membrane.h"
 #include "nested_newton.h"
 #include "solution_values.h"
 #include "support/radial_reference.h"
 #include "support/scene_problem.h"
+#include "truth.h"
 
 namespace drumhead::bench {
 namespace {
@@ -33,7 +36,6 @@ namespace {
 using Eigen::Vector2d;
 using Exact = std::function<Vector2d(Vector2d)>;
 
-constexpr int kReference = 1600;
 constexpr double kLeastOrder = 1.6;  // of the mesh's error on S2
 
 struct Case {
@@ -52,14 +54,10 @@ Exact radial(double kappa) {
   };
 }
 
-Exact solved(const scenes::Scene& scene, double kappa) {
-  multigrid::SolverOptions options;
-  options.curve_method = multigrid::CurveMethod::conforming;
-  auto fine = std::make_shared<multigrid::Solution>(
-      multigrid::solve(scenes::problem(scene, kReference, kappa), options));
-  return [fine](Vector2d p) {
-    const kernels::Position to = kernels::forward_position(map_of(*fine), {p.x(), p.y()});
-    return Vector2d(to.x, to.y);
+Exact solved(const scenes::Scene& scene, double kappa, const std::string& folder) {
+  return [truth = std::make_shared<Truth>(scene, kappa, folder)](Vector2d p) {
+    const auto [x, y] = truth->at(p.x(), p.y());
+    return Vector2d(x, y);
   };
 }
 
@@ -79,11 +77,9 @@ Error error_of(const std::vector<Vector2d>& rest, const std::vector<Vector2d>& m
 }
 
 Json row_of(const Case& c, int n, const char* method, std::size_t nodes, const Error& error) {
-  Json row{{"scene", c.scene.name}, {"kappa", c.kappa},     {"n", n},
-           {"method", method},      {"nodes", nodes},       {"rms_px", error.rms},
-           {"max_px", error.max},   {"status", "converged"}};
-  if (!c.closed_form) row["reference"] = kReference;
-  return row;
+  return {{"scene", c.scene.name}, {"kappa", c.kappa},     {"n", n},
+          {"method", method},      {"nodes", nodes},       {"rms_px", error.rms},
+          {"max_px", error.max},   {"status", "converged"}};
 }
 
 /// RMS error, px; NaN where it could not be solved.
@@ -150,6 +146,10 @@ int main(int argc, char** argv) {
   using namespace drumhead;
   std::vector<int> sizes;
   for (int k = 1; k < argc; ++k) {
+    if (std::string_view(argv[k]) == "--truth") {
+      ++k;
+      continue;
+    }
     sizes.push_back(std::atoi(argv[k]));
     if (sizes.back() < 32 || sizes.back() % 2) {
       std::fprintf(stderr, "mesh_bench: %s: must be even and at least 32\n", argv[k]);
@@ -158,10 +158,11 @@ int main(int argc, char** argv) {
   }
   if (sizes.empty()) sizes = {100, 200, 400};
   bench::Results results(argc, argv);
+  const std::string folder = bench::truth_folder(argc, argv);
   const scenes::Scene s1 = scenes::sponge(scenes::kStudyOffset);
   const scenes::Scene s2 = scenes::roundabout(90.0, scenes::kStudyOffset);
   bool right = true;
-  for (const bench::Case& c : {bench::Case{s1, 1.0, bench::solved(s1, 1.0), false},
+  for (const bench::Case& c : {bench::Case{s1, 1.0, bench::solved(s1, 1.0, folder), false},
                                bench::Case{s2, 1.0, bench::radial(1.0), true},
                                bench::Case{s2, 10.0, bench::radial(10.0), true}})
     right &= bench::run(c, sizes, results);

@@ -38,9 +38,11 @@ struct Clock {
 
 constexpr double kJump = 0.005, kTheta = 1.0;
 constexpr double kReduction = 1e-3;
-// Cycles after which an entry is given up; MINRES takes several iterations for one. On lattices of
-// more than kLarge cells a side that is sooner for all but gcr.
-constexpr int kMostCycles = 60, kMostCyclesLarge = 8, kLarge = 256;
+constexpr int kEverything = 128, kAll = 512;
+constexpr double kMostKappa = 100.0;
+// Cycles after which an entry is given up; MINRES takes several iterations for one, and plain
+// MINRES, whose iterations grow with n, as many more as the lattice has cells a side.
+constexpr int kMostCycles = 60;
 
 constexpr Solver kSolvers[] = {Solver::gcr, Solver::kaczmarz, Solver::coloured_kaczmarz,
                                Solver::minres, Solver::minres_multigrid};
@@ -52,11 +54,11 @@ struct Entry {
 
 template <class T>
 Entry measure(scenes::NewtonLevel<T>& level, Solver solver) {
-  const bool few = solver != Solver::gcr && level.level().nx > kLarge;
+  const int more = solver == Solver::minres ? std::max(1, level.level().nx / kEverything) : 1;
   multigrid::LinearOptions options{.solver = solver,
                                    .content = kReduction,
                                    .reduction = kReduction,
-                                   .most_cycles = few ? kMostCyclesLarge : kMostCycles};
+                                   .most_cycles = more * kMostCycles};
   Entry entry;
   const Clock::time_point start = Clock::now();
   entry.report = level.solve(options);
@@ -80,6 +82,11 @@ void add(const Json& keys, scenes::NewtonLevel<T>& level, Solver solver, const s
                                      {"converged", entry.report.residual <= kReduction}}));
 }
 
+/// Whether a solver is asked for curves of this weight on n × n cells.
+bool taken(Solver solver, double weight, int n) {
+  return solver == Solver::gcr || n <= kEverything || (n <= kAll && std::isinf(weight));
+}
+
 /// `weight`: of the curves, d.
 void run(const scenes::Scene& scene, double kappa, double weight, int n, Results& results) {
   multigrid::WarpProblem problem = scenes::problem(scene, n, kappa);
@@ -90,7 +97,7 @@ void run(const scenes::Scene& scene, double kappa, double weight, int n, Results
   add(keys, conforming, Solver::gcr, "gcr, conforming curves", results);
   scenes::NewtonLevel<float> averaged(problem, kJump, kTheta);
   for (const Solver solver : kSolvers)
-    add(keys, averaged, solver, multigrid::name(solver), results);
+    if (taken(solver, weight, n)) add(keys, averaged, solver, multigrid::name(solver), results);
 }
 
 void run_exact(const scenes::Scene& scene, double kappa, int n, Results& results) {
@@ -99,14 +106,17 @@ void run_exact(const scenes::Scene& scene, double kappa, int n, Results& results
                                     std::numeric_limits<double>::infinity());
   level.drop_jump();
   const Json keys = joined(keys_of(scene, kappa), {{"n", n}, {"exact", true}});
-  for (const Solver solver : kSolvers) add(keys, level, solver, multigrid::name(solver), results);
+  for (const Solver solver : kSolvers)
+    if (n <= kEverything || solver == Solver::gcr)
+      add(keys, level, solver, multigrid::name(solver), results);
 }
 
 /// Soft curves, hard ones, exact rows.
 void run_all(const scenes::Scene& scene, double kappa, int n, Results& results) {
-  for (const double weight : {1e2, 1e4, std::numeric_limits<double>::infinity()})
-    run(scene, kappa, weight, n, results);
-  run_exact(scene, kappa, n, results);
+  if (n <= kAll)
+    for (const double weight : {1e2, 1e4}) run(scene, kappa, weight, n, results);
+  run(scene, kappa, std::numeric_limits<double>::infinity(), n, results);
+  if (n <= kAll) run_exact(scene, kappa, n, results);
 }
 
 }  // namespace
@@ -125,7 +135,7 @@ int main(int argc, char** argv) {
   for (const scenes::Scene& scene :
        {scenes::sponge(offset), scenes::roundabout(90.0, offset), scenes::shift(offset)}) {
     for (const double kappa : {0.0, 1.0, 10.0, 100.0, 1e4, infinite})
-      bench::run_all(scene, kappa, n, results);
+      if (n <= bench::kAll || kappa <= bench::kMostKappa) bench::run_all(scene, kappa, n, results);
   }
   bench::run_all(scenes::pinch(offset), 1.0, n, results);
   return 0;

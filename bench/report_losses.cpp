@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace drumhead::bench {
 namespace {
@@ -25,32 +26,79 @@ bool same(const Json& a, const Json& b, std::initializer_list<const char*> keys)
       keys, [&](const char* key) { return a.value(key, Json()) == b.value(key, Json()); });
 }
 
+/// Drumhead's own solver, not one of the paper's or a textbook's in its Newton iteration.
+bool is_default(const Json& row) {
+  const std::string method = text(row, "method");
+  return method == "drumhead" || method == "drumhead, averaged" || method == "drumhead, conforming";
+}
+
+/// The method without drumhead's name before it.
+std::string way_of(const Json& row) {
+  const std::string method = text(row, "method"), ours = "drumhead, ";
+  return method.starts_with(ours) ? method.substr(ours.size()) : method;
+}
+
+/// Appends to words that a sentence lists.
+void list(std::string& words, const std::string& more, const char* between = "; ") {
+  words += (words.empty() ? "" : between) + more;
+}
+
 /// The least `key` of drumhead's solved rows that `fit` holds of.
 double best_of_ours(const Rows& rows, const char* key,
                     const std::function<bool(const Json&)>& fit) {
   double least = kNever;
   for (const Json& row : rows)
-    if (is_ours(row) && solved(row) && fit(row) && value(row, key) < least) least = value(row, key);
+    if (is_default(row) && solved(row) && fit(row) && value(row, key) < least)
+      least = value(row, key);
   return least;
+}
+
+std::string threads_of(const Json& row) {
+  return figure(value(row, "threads")) + (value(row, "threads") == 1 ? " thread" : " threads");
 }
 
 Losses table1(const Rows& rows) {
   Losses found{"Whole solve of the sponge, lattice by lattice (paper's figures as printed)", {}};
-  for (const auto& [key, unit, what] :
-       {std::tuple{"seconds", "s", "takes"}, std::tuple{"bytes", "bytes", "needs"}})
+  for (const auto& [key, unit, what, scale] :
+       {std::tuple{"seconds", " s", "takes ", 1.0}, std::tuple{"bytes", " MB", "needs ", 1e-6}})
     for (const Json& peer : rows) {
       if (is_ours(peer) || !solved(peer)) continue;
-      const double theirs = value(peer, key);
-      const double ours = best_of_ours(rows, key, [&](const Json& row) {
-        return same(row, peer, {"n", "threads"});
-      });
-      if (theirs < ours && std::isfinite(ours))
-        found.words.push_back(text(peer, "method") + " " + what + " " + figure(theirs) + " " +
-                              unit + " at " + figure(value(peer, "n")) + "², " +
-                              figure(value(peer, "threads")) +
-                              (value(peer, "threads") == 1 ? " thread" : " threads") +
-                              "; drumhead " + figure(ours) + " " + unit + ".");
+      std::string ours;
+      for (const Json& row : rows)
+        if (is_default(row) && solved(row) && same(row, peer, {"n", "threads"}) &&
+            value(peer, key) < value(row, key))
+          list(ours, way_of(row) + " " + figure(scale * value(row, key)) + unit);
+      if (!ours.empty())
+        found.words.push_back(text(peer, "method") + " " + what + figure(scale * value(peer, key)) +
+                              unit + " at " + figure(value(peer, "n")) + "², " + threads_of(peer) +
+                              "; drumhead, " + ours + ".");
     }
+  return found;
+}
+
+/// Seconds on one thread by the row's; NaN where one was not measured.
+double gain_of(const Rows& rows, const Json& row) {
+  for (const Json& alone : rows)
+    if (value(alone, "threads") == 1 && same(alone, row, {"method", "n"}))
+      return value(alone, "seconds") / value(row, "seconds");
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Where threads gain nothing, or less than they gain a peer.
+Losses threads(const Rows& rows) {
+  Losses found{"Gain of threads, the sponge (the paper's six cores were not tried)", {}};
+  for (const Json& ours : rows) {
+    if (!is_default(ours) || value(ours, "threads") == 1) continue;
+    const double gain = gain_of(rows, ours);
+    std::string more;
+    for (const Json& peer : rows)
+      if (!is_ours(peer) && same(peer, ours, {"n", "threads"}) && gain_of(rows, peer) > gain)
+        list(more, text(peer, "method") + " " + figure(gain_of(rows, peer)), ", ");
+    if (gain < 1.0 || !more.empty())
+      found.words.push_back(text(ours, "method") + ", " + figure(value(ours, "n")) +
+                            "²: " + threads_of(ours) + " are " + figure(gain) +
+                            " times as fast as one" + (more.empty() ? "" : "; " + more) + ".");
+  }
   return found;
 }
 
@@ -58,7 +106,7 @@ Losses table1(const Rows& rows) {
 Losses precision(const Rows& rows, const char* key, const std::string& words) {
   Losses found{words + " against seconds, one thread", {}};
   for (const Json& peer : rows) {
-    if (is_ours(peer) || !solved(peer) || !std::isfinite(value(peer, key))) continue;
+    if (is_default(peer) || !solved(peer) || !std::isfinite(value(peer, key))) continue;
     const double seconds = best_of_ours(rows, "seconds", [&](const Json& row) {
       return same(row, peer, {"scene", "kappa"}) && value(row, key) <= value(peer, key);
     });
@@ -77,18 +125,26 @@ Losses precision(const Rows& rows, const char* key, const std::string& words) {
   return found;
 }
 
-/// At the same number of cells, whoever is more accurate than drumhead's default, averaged, way.
+/// At the same number of cells, whoever is more accurate than one of drumhead's ways.
 Losses same_lattice(const Rows& rows) {
-  Losses found{"Error on as many cells (time left aside), against drumhead's better way", {}};
+  // Solvers of the same equations, stopped by the same rule, end within a tenth of each other.
+  constexpr double kSame = .9;
+  Losses found{"Error on as many cells, RMS (largest), px, time left aside", {}};
+  const auto errors = [](const Json& row) {
+    return figure(value(row, "rms_px")) + " (" + figure(value(row, "max_px")) + ")";
+  };
   for (const Json& peer : rows) {
     if (is_ours(peer) || !solved(peer)) continue;
-    const double ours = best_of_ours(rows, "rms_px", [&](const Json& row) {
-      return same(row, peer, {"scene", "kappa", "n"});
-    });
-    if (value(peer, "rms_px") < ours && std::isfinite(ours))
-      found.words.push_back(
-          scene_of(peer) + ", " + figure(value(peer, "n")) + "²: " + text(peer, "method") +
-          " leaves " + figure(value(peer, "rms_px")) + " px RMS, drumhead " + figure(ours) + ".");
+    std::string ours;
+    for (const Json& row : rows)
+      if (is_default(row) && solved(row) && same(row, peer, {"scene", "kappa", "n"}) &&
+          (value(peer, "rms_px") < kSame * value(row, "rms_px") ||
+           value(peer, "max_px") < kSame * value(row, "max_px")))
+        list(ours, way_of(row) + " " + errors(row));
+    if (!ours.empty())
+      found.words.push_back(scene_of(peer) + ", " + figure(value(peer, "n")) +
+                            "²: " + text(peer, "method") + " " + errors(peer) + "; drumhead, " +
+                            ours + ".");
   }
   return found;
 }
@@ -98,19 +154,32 @@ Losses warps(const Rows& rows) {
   const struct {
     const char *key, *words, *unit;
     double scale;
-  } measures[] = {{"seconds", "is faster", " s", 1.0},
-                  {"gap_rms_px", "meets the curves more closely", " px RMS", 1.0},
-                  {"folded_share", "folds less of the picture", " %", 100.0},
-                  {"rms_J", "keeps areas better", " RMS(J−1)", 1.0}};
+  } measures[] = {{"seconds", "is faster", "s", 1.0},
+                  {"gap_rms_px", "meets the curves more closely", "px RMS", 1.0},
+                  {"folded_share", "folds less of the picture", "%", 100.0},
+                  {"rms_J", "keeps areas better", "RMS(J−1)", 1.0}};
+  const auto name = [](const Json& row) { return scene_of(row) + ": " + text(row, "method"); };
+  const Rows peers = where(rows, [](const Json& row) { return !is_ours(row); });
   for (const auto& m : measures)
-    for (const Json& peer : rows) {
-      if (is_ours(peer)) continue;
-      const double ours =
-          best_of_ours(rows, m.key, [&](const Json& row) { return same(row, peer, {"scene"}); });
-      if (value(peer, m.key) < ours)
-        found.words.push_back(scene_of(peer) + ": " + text(peer, "method") + " " + m.words + ": " +
-                              figure(m.scale * value(peer, m.key)) + m.unit + ", drumhead " +
-                              figure(m.scale * ours) + m.unit + ".");
+    for (const std::string& peer : distinct(peers, name)) {
+      std::string theirs, ours;
+      for (const Json& row : rows) {
+        const auto beats = [&](const Json& a, const Json& b) {
+          return value(a, m.key) < value(b, m.key) && same(a, b, {"scene"});
+        };
+        const std::string number = figure(m.scale * value(row, m.key));
+        if (name(row) == peer && std::ranges::any_of(rows, [&](const Json& other) {
+              return is_default(other) && beats(row, other);
+            }))
+          list(theirs, number + " (" + figure(value(row, "points")) + " points)", ", ");
+        if (is_default(row) && std::ranges::any_of(peers, [&](const Json& other) {
+              return name(other) == peer && beats(other, row);
+            }))
+          list(ours, way_of(row) + " at kappa " + figure(value(row, "kappa")) + " " + number, ", ");
+      }
+      if (!ours.empty())
+        found.words.push_back(peer + " " + m.words + ", " + m.unit + ": " + theirs +
+                              "; drumhead, " + ours + ".");
     }
   return found;
 }
@@ -118,20 +187,22 @@ Losses warps(const Rows& rows) {
 Losses rates(const Rows& rows) {
   Losses found{"One Newton system: work for a factor of ten, against drumhead's default gcr", {}};
   for (const Json& ours : rows) {
-    if (text(ours, "solver") != "gcr") continue;
+    const std::string solver = text(ours, "solver");
+    if (!solver.starts_with("gcr")) continue;
     const std::string where =
         scene_of(ours) + ", " + figure(value(ours, "n")) + "²" +
         (std::isfinite(value(ours, "weight")) ? ", d " + figure(value(ours, "weight"))
                                               : std::string()) +
         (ours.value("exact", false) ? ", exact" : "");
-    if (!ours.value("converged", true)) found.words.push_back(where + ": gcr does not converge.");
+    if (!ours.value("converged", true))
+      found.words.push_back(where + ": " + solver + " does not converge.");
     for (const Json& peer : rows)
       if (!text(peer, "solver").starts_with("gcr") && peer.value("converged", true) &&
           same(ours, peer, {"scene", "kappa", "n", "weight", "exact"}) &&
           value(peer, "work_units_per_digit") < value(ours, "work_units_per_digit"))
         found.words.push_back(where + ": " + text(peer, "solver") + " takes " +
-                              figure(value(peer, "work_units_per_digit")) + " work units, gcr " +
-                              figure(value(ours, "work_units_per_digit")) + ".");
+                              figure(value(peer, "work_units_per_digit")) + " work units, " +
+                              solver + " " + figure(value(ours, "work_units_per_digit")) + ".");
   }
   return found;
 }
@@ -174,17 +245,25 @@ Losses samplers(const Rows& rows) {
 
 Losses unsolved(const Rows& rows) {
   Losses found{"Solves of drumhead's own that did not converge, or not as the tests expect", {}};
+  // Lattices of which the same is said are named together.
+  std::map<std::string, std::string> lattices;
+  std::vector<std::string> lines;
   for (const Json& row : rows) {
-    const bool peer = row.contains("method") && !is_ours(row);
-    const bool hard_case = text(row, "table") == "stability";
-    if (peer || (hard_case ? row.value("passed", false) : solved(row))) continue;
-    std::string line = text(row, "table") + ": " + text(row, "case");
+    const std::string table = text(row, "table");
+    const bool peer = row.contains("method") && table != "study" && !is_ours(row);
+    const bool hard_case = table == "stability" || table == "study";
+    const std::string ended = text(row, hard_case ? "ended" : "status");
+    if (peer || (hard_case ? row.value("passed", ended == "converged") : solved(row))) continue;
+    std::string line = table + ": " + text(row, "case");
     if (row.contains("scene")) line += scene_of(row);
-    if (row.contains("n")) line += ", " + figure(value(row, "n")) + "²";
     for (const char* key : {"method", "model", "curves"})
       if (row.contains(key)) line += ", " + text(row, key);
-    found.words.push_back(line + ": " + text(row, hard_case ? "ended" : "status") + ".");
+    line += ": " + ended;
+    if (!lattices.contains(line)) lines.push_back(line);
+    if (row.contains("n")) list(lattices[line], figure(value(row, "n")) + "²", ", ");
   }
+  for (const std::string& line : lines)
+    found.words.push_back(line + (lattices[line].empty() ? "" : " at " + lattices[line]) + ".");
   return found;
 }
 
@@ -195,7 +274,10 @@ std::vector<Losses> losses(const Measurements& measured) {
              other = measured.table("warps"), linear = measured.table("rates"),
              loops = measured.table("kernels"), pictures = measured.table("resample");
   std::vector<Losses> found;
-  if (!first.empty()) found.push_back(table1(first));
+  if (!first.empty()) {
+    found.push_back(table1(first));
+    found.push_back(threads(first));
+  }
   if (!all.empty()) {
     found.push_back(precision(all, "rms_px", "RMS error"));
     found.push_back(precision(all, "max_px", "Largest error"));

@@ -128,7 +128,7 @@ std::string page_of(const Measurements& measured, const std::string& pictures) {
                                            {"losses", lost(measured)},
                                            {"runs", runs(measured)},
                                            {"gallery", gallery(pictures)}};
-  for (const char* section : {"table1", "precision", "scaling", "warps"})
+  for (const char* section : {"table1", "precision", "precision_more", "scaling", "warps"})
     parts[std::string("plots_") + section] = figures(drawn, section);
   std::string others;
   const std::string placed =

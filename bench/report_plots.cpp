@@ -18,12 +18,27 @@ struct Peer {
   const char* part;  // of the name
   int look;
 };
-constexpr Peer kPeers[] = {
-    {"paper, PARDISO", 7},    {"paper", 6},        {"triangle mesh", 4}, {"conforming", 0},
-    {"minres-multigrid", 10}, {"minres", 9},       {"coloured", 11},     {"kaczmarz", 8},
-    {"averaged", 1},          {"gcr", 1},          {"MUMPS", 2},         {"UMFPACK", 3},
-    {"CHOLMOD", 3},           {"PARDISO", 7},      {"Boomer", 12},       {"AMG", 5},
-    {"thin-plate", 4},        {"moving least", 5}, {"Shepard", 7}};
+constexpr Peer kPeers[] = {{"paper, PARDISO", 7},
+                           {"paper", 6},
+                           {"triangle mesh", 4},
+                           {"conforming", 0},
+                           {"minres-multigrid", 10},
+                           {"minres", 9},
+                           {"coloured", 11},
+                           {"kaczmarz", 8},
+                           {"averaged", 1},
+                           {"gcr", 1},
+                           {"MUMPS", 2},
+                           {"UMFPACK", 3},
+                           {"CHOLMOD", 3},
+                           {"PARDISO", 7},
+                           {"Boomer", 12},
+                           {"AMG", 5},
+                           {"OpenCV", 2},
+                           {"thin-plate", 4},
+                           {"similarity", 8},
+                           {"moving least", 5},
+                           {"Shepard", 7}};
 
 int look_of(const std::string& name) {
   for (const Peer& peer : kPeers)
@@ -108,31 +123,40 @@ void add_table1(const Measurements& measured, std::vector<ReportPlot>& all) {
                   .series = lines_of(where(rows, several), with_threads, number_of("n"), gain)}});
 }
 
+const struct {
+  const char* scene;
+  double kappa;
+  const char* words;
+} kScenes[] = {{"S2", 10.0, "roundabout turned by 90°, kappa/mu 10"},
+               {"S4", 10.0, "disc moved, kappa/mu 10"},
+               {"S1", 1.0, "sponge, kappa/mu 1"}};
+
+/// Words of a scene that stands alone in its plot.
+std::string words_of(const std::string& scene) {
+  for (const auto& known : kScenes)
+    if (scene == known.scene)
+      return std::string(known.words).substr(0, std::string(known.words).find(','));
+  return scene;
+}
+
 void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
   const Rows every = where(measured.table("work_precision"), solved);
   const struct {
-    const char* scene;
-    double kappa;
-    const char* words;
-  } scenes[] = {{"S2", 10.0, "roundabout 90°, kappa/mu 10"},
-                {"S4", 10.0, "disc moved, kappa/mu 10"},
-                {"S1", 1.0, "sponge, kappa/mu 1"}};
-  const struct {
-    const char *id, *key, *words;
-  } errors[] = {{"precision", "rms_px", "RMS error"},
-                {"precision_max", "max_px", "largest error"},
-                {"precision_gap", "gap_rms_px", "curve gap, RMS"}};
-  for (const auto& scene : scenes)
-    for (const auto& error : errors) {
+    const char *id, *section, *key, *words;
+  } errors[] = {{"precision", "precision", "rms_px", "RMS error"},
+                {"precision_max", "precision_more", "max_px", "Largest error"},
+                {"precision_gap", "precision_more", "gap_rms_px", "Curve gap, RMS"}};
+  for (const auto& error : errors)
+    for (const auto& scene : kScenes) {
       const Rows rows = where(every, [&](const Json& row) {
         return text(row, "scene") == scene.scene && value(row, "kappa") == scene.kappa;
       });
       const std::string id = std::string(error.id) + "_" + scene.scene;
       ReportPlot plot{
           id,
-          "precision",
-          "Beside the marks: cells across the picture.",
-          {.title = std::string(error.words) + " against time: " + scene.words,
+          error.section,
+          "",
+          {.title = std::string(error.words) + ": " + scene.words,
            .x_name = "seconds, one thread",
            .y_name = std::string(error.words) + ", px of 1000",
            .series = lines_of(
@@ -147,6 +171,22 @@ void add_precision(const Measurements& measured, std::vector<ReportPlot>& all) {
     }
 }
 
+void add_tolerances(const Measurements& measured, std::vector<ReportPlot>& all) {
+  const Rows rows = where(measured.table("tolerances"), solved);
+  all.push_back(
+      {"tolerances",
+       "precision",
+       "Beside the marks: the tolerance in px, on one lattice. Where a line is level, the "
+       "lattice's own error is all that is left.",
+       {.title = "RMS error over tolerances: roundabout, 400²",
+        .x_name = "seconds, one thread",
+        .y_name = "RMS error, px of 1000",
+        .series = lines_of(
+            rows, [](const Json& row) { return text(row, "method"); }, number_of("seconds"),
+            number_of("rms_px"),
+            [](const Json& row) { return figure(value(row, "tolerance_px")); })}});
+}
+
 /// d of the curves; they are hard where a row names none, and then may be exact.
 double weight_of(const Json& row) {
   return row.contains("weight") ? value(row, "weight") : std::numeric_limits<double>::infinity();
@@ -158,22 +198,44 @@ std::string stiffness_of(const Json& row) {
   return exact(row) ? "exact" : hard(row) ? "hard" : figure(weight_of(row));
 }
 
-std::string scene_and_kappa(const Json& row) {
-  return text(row, "scene") + ", kappa " + figure(value(row, "kappa"));
+/// Lines, one for each kappa/mu, in colours that follow it.
+std::vector<PlotSeries> lines_of_kappas(const Rows& rows, const Number& x, const Number& y) {
+  std::vector<PlotSeries> lines = lines_of(
+      rows, [](const Json& row) { return "kappa/mu " + figure(value(row, "kappa")); }, x, y);
+  for (std::size_t k = 0; k < lines.size(); ++k) lines[k].look = int(k);
+  return lines;
 }
 
-void add_rates_over_lattices(const Rows& gcr, const Number& rate, std::vector<ReportPlot>& all) {
-  ReportPlot sizes{"rates_n",
-                   "scaling",
-                   "One Newton system, hard curves.",
-                   {.title = "Work for a factor of ten over lattices, gcr",
-                    .x_name = "cells across the picture",
-                    .y_name = "work units per digit",
-                    .x_at_points = true}};
-  sizes.plot.series = lines_of(where(gcr, hard), scene_and_kappa, number_of("n"), rate);
-  std::erase_if(sizes.plot.series, [](const PlotSeries& line) { return line.points.size() < 2; });
-  for (std::size_t k = 0; k < sizes.plot.series.size(); ++k) sizes.plot.series[k].look = int(k) % 8;
-  all.push_back(std::move(sizes));
+void add_rates_over_lattices(const Rows& every, const Number& rate, std::vector<ReportPlot>& all) {
+  const Rows roundabout =
+      where(every, [](const Json& row) { return hard(row) && text(row, "scene") == "S2"; });
+  const auto solver = [](const Json& row) { return text(row, "solver"); };
+  ReportPlot solvers{"rates_n",
+                     "scaling",
+                     "One Newton system of the roundabout at kappa/mu 1, hard curves.",
+                     {.title = "Work for a factor of ten over lattices",
+                      .x_name = "cells across the picture",
+                      .y_name = "work units per digit",
+                      .x_at_points = true}};
+  solvers.plot.series =
+      lines_of(where(roundabout, [](const Json& row) { return value(row, "kappa") == 1.0; }),
+               solver, number_of("n"), rate);
+  all.push_back(std::move(solvers));
+  for (const char* name : {"gcr", "gcr, conforming curves"}) {
+    const bool averaged = std::string(name) == "gcr";
+    ReportPlot kappas{averaged ? "rates_n_kappa" : "rates_n_kappa_conforming",
+                      "scaling",
+                      "One Newton system of the roundabout, hard curves.",
+                      {.title = std::string("The same of gcr, ") +
+                                (averaged ? "averaged" : "conforming") + " curves, by kappa/mu",
+                       .x_name = "cells across the picture",
+                       .y_name = "work units per digit",
+                       .x_at_points = true}};
+    kappas.plot.series =
+        lines_of_kappas(where(roundabout, [&](const Json& row) { return solver(row) == name; }),
+                        number_of("n"), rate);
+    all.push_back(std::move(kappas));
+  }
 }
 
 void add_rates_over_kappa(const Rows& every, const Number& rate, std::vector<ReportPlot>& all) {
@@ -198,21 +260,17 @@ void add_rates_over_kappa(const Rows& every, const Number& rate, std::vector<Rep
   all.push_back(std::move(kappas));
 }
 
-void add_rates_over_weights(const Rows& gcr, const Number& rate, std::vector<ReportPlot>& all) {
-  // Only scenes that were tried with soft curves.
-  const auto like = [](const Json& a) {
-    return [&a](const Json& b) {
-      return text(a, "scene") == text(b, "scene") && value(a, "kappa") == value(b, "kappa") &&
-             value(a, "n") == value(b, "n") && soft(b);
-    };
-  };
-  const Rows tried =
-      where(gcr, [&](const Json& row) { return std::ranges::any_of(gcr, like(row)); });
+void add_rates_over_weights(const Rows& every, const Number& rate, std::vector<ReportPlot>& all) {
+  const Rows tried = where(every, [](const Json& row) {
+    return text(row, "solver") == "gcr" && text(row, "scene") == "S2" && value(row, "n") == 128;
+  });
+  // Hard curves alone are no scan of d.
+  if (std::ranges::none_of(tried, soft)) return;
   ReportPlot weights{
       "rates_d",
       "scaling",
-      "One Newton system, gcr. Hard: d 1e6 with the q-jump; exact: rows without both, "
-      "in double precision.",
+      "One Newton system of the roundabout at 128², gcr, averaged curves. Hard: d 1e6 with the "
+      "q-jump; exact: rows without both, in double precision.",
       {.title = "Work for a factor of ten over the curves' stiffness d",
        .x_name = "d, stiffness per length, in mu per picture side",
        .y_name = "work units per digit"}};
@@ -223,23 +281,17 @@ void add_rates_over_weights(const Rows& gcr, const Number& rate, std::vector<Rep
   const auto stiffness = [words = weights.plot.x_words](const Json& row) {
     return double(std::ranges::find(words, stiffness_of(row)) - words.begin());
   };
-  weights.plot.series = lines_of(
-      ascending,
-      [](const Json& row) { return scene_and_kappa(row) + ", " + figure(value(row, "n")) + "²"; },
-      stiffness, rate);
-  for (std::size_t k = 0; k < weights.plot.series.size(); ++k)
-    weights.plot.series[k].look = int(k) % 8;
+  weights.plot.series = lines_of_kappas(ascending, stiffness, rate);
   all.push_back(std::move(weights));
 }
 
 void add_rates(const Measurements& measured, std::vector<ReportPlot>& all) {
   const Rows every =
       where(measured.table("rates"), [](const Json& row) { return row.value("converged", true); });
-  const Rows gcr = where(every, [](const Json& row) { return text(row, "solver") == "gcr"; });
   const Number rate = number_of("work_units_per_digit");
-  add_rates_over_lattices(gcr, rate, all);
   add_rates_over_kappa(every, rate, all);
-  add_rates_over_weights(gcr, rate, all);
+  add_rates_over_lattices(every, rate, all);
+  add_rates_over_weights(every, rate, all);
 }
 
 void add_warps(const Measurements& measured, std::vector<ReportPlot>& all) {
@@ -247,15 +299,21 @@ void add_warps(const Measurements& measured, std::vector<ReportPlot>& all) {
        distinct(measured.table("warps"), [](const Json& row) { return text(row, "scene"); })) {
     const Rows rows = where(measured.table("warps"),
                             [&](const Json& row) { return text(row, "scene") == scene; });
+    // The others' points are the same.
+    const auto label = [](const Json& row) {
+      return row.contains("kappa")                        ? "κ " + figure(value(row, "kappa"))
+             : text(row, "method") == "thin-plate spline" ? figure(value(row, "points"))
+                                                          : std::string();
+    };
     all.push_back({"warps_" + scene,
                    "warps",
                    "",
-                   {.title = "How far curves are missed, against time: " + scene,
+                   {.title = "How far curves are missed: " + words_of(scene),
                     .x_name = "seconds, one thread",
                     .y_name = "curve gap, RMS, px of 1000",
                     .series = lines_of(
                         rows, [](const Json& row) { return text(row, "method"); },
-                        number_of("seconds"), number_of("gap_rms_px"))}});
+                        number_of("seconds"), number_of("gap_rms_px"), label)}});
   }
 }
 
@@ -265,6 +323,7 @@ std::vector<ReportPlot> plots(const Measurements& measured) {
   std::vector<ReportPlot> all;
   add_table1(measured, all);
   add_precision(measured, all);
+  add_tolerances(measured, all);
   add_rates(measured, all);
   add_warps(measured, all);
   std::erase_if(all, [](const ReportPlot& plot) { return plot.plot.series.empty(); });

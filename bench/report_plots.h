@@ -11,7 +11,7 @@ namespace drumhead::bench {
 
 struct ReportPlot {
   std::string id;       ///< also its file's name
-  std::string section;  ///< of the page: "table1", "precision" or "scaling"
+  std::string section;  ///< of the page, see report_page.cpp
   std::string caption;
   SvgPlot plot;
   bool readme = false;

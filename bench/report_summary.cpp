@@ -51,9 +51,9 @@ void add_rivals(const Rows& rows, std::vector<std::string>& all) {
   all.push_back("On the same machine, to the same stopping rule, the fastest other solver at " +
                 figure(value(*best, "n")) + "² (" + text(*best, "method") + ") takes " +
                 figure(value(*best, "seconds")) + " s, drumhead " +
-                figure(value(*ours, "seconds")) +
-                " s: " + by(value(*best, "seconds"), value(*ours, "seconds")) + "; memory " +
-                by(value(*best, "bytes"), value(*ours, "bytes")) + ".");
+                figure(value(*ours, "seconds")) + " s; that is " +
+                by(value(*best, "seconds"), value(*ours, "seconds")) + " the time and " +
+                by(value(*best, "bytes"), value(*ours, "bytes")) + " the memory.");
 }
 
 void add_precision(const Rows& rows, std::vector<std::string>& all) {
@@ -109,8 +109,12 @@ std::string machine(const Measurements& measured) {
   for (const std::string& processor : processors) words += (words.empty() ? "" : "; ") + processor;
   words += ". Commit";
   for (const std::string& commit : commits) words += " " + commit;
-  words += ", " + first + (last == first ? "" : " to " + last) +
-           "; greatest load before a program " + figure(load) + ".";
+  // Of "2026-11-22T13:46:55Z" the date and the minute.
+  const auto minute = [](const std::string& date) {
+    return date.size() < 16 ? date : date.substr(0, 10) + " " + date.substr(11, 5);
+  };
+  words += ", " + minute(first) + (last == first ? "" : " to " + minute(last)) +
+           " UTC; greatest load before a program " + figure(load) + ".";
   return words;
 }
 

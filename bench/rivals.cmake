@@ -32,8 +32,8 @@ if(CGAL_INCLUDE_DIR AND CHOLMOD_INCLUDE_DIR AND CHOLMOD_LIBRARY AND GMP_LIBRARY 
   add_executable(mesh_bench mesh_bench.cpp mesh_membrane.cpp curve_mesh.cpp)
   drumhead_compile_settings(mesh_bench)
   target_include_directories(mesh_bench SYSTEM PRIVATE ${CGAL_INCLUDE_DIR} ${CHOLMOD_INCLUDE_DIR})
-  target_link_libraries(mesh_bench PRIVATE drumhead_nested_newton ${CHOLMOD_LIBRARY}
-    ${GMP_LIBRARY} ${MPFR_LIBRARY})
+  target_link_libraries(mesh_bench PRIVATE drumhead_nested_newton drumhead_bench_truth
+    ${CHOLMOD_LIBRARY} ${GMP_LIBRARY} ${MPFR_LIBRARY})
 endif()
 
 # Algebraic multigrid: PETSc with hypre (libpetsc-real-dev).

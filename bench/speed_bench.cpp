@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Speed against error of whole solves, as rows of JSON (results.h).
-//   speed_bench table1 [--large]      the paper's Table 1: the sponge, on one and all processors
-//   speed_bench precision [--large]   error against time over lattices, curves met both ways
-//   speed_bench tolerances            error against time over tolerances, on one lattice
-//   speed_bench solvers               error against time by the paper's linear solvers
-// --large: also 1600² and 3200²; the roundabout's error also at 1600².
+//   speed_bench table1 [--large]             the paper's Table 1: the sponge, on one and all
+//                                            processors; --large: also 1600² and 3200²
+//   speed_bench precision [--truth FOLDER]   error against time over lattices, curves met both
+//                                            ways; without truth.h's folder to 400², S2 to 1600²
+//   speed_bench tolerances                   error against time over tolerances, on one lattice
+//   speed_bench solvers [--truth FOLDER]     error against time by the paper's linear solvers
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -76,12 +77,12 @@ void table1(bool large, Results& results) {
                            fastest(sponge, n, {.curve_method = curves, .threads = threads})));
 }
 
-void precision(bool large, Results& results) {
+void precision(const std::string& folder, Results& results) {
   for (const Case& c : cases()) {
-    const Truth truth(c.scene, c.kappa);
+    const Truth truth(c.scene, c.kappa, folder);
     for (const CurveMethod curves : {CurveMethod::averaged, CurveMethod::conforming})
       for (const int n : {50, 100, 200, 400, 800, 1600}) {
-        if (n > truth.most_cells() || (n == 1600 && !large)) continue;
+        if (n > truth.most_cells()) continue;
         const multigrid::Solution solution = fastest(c, n, {.curve_method = curves, .threads = 1});
         results.row("work_precision", joined(row_of(c, method_of(curves), n, solution),
                                              errors_of(truth, n, solution)));
@@ -103,9 +104,9 @@ void tolerances(Results& results) {
     }
 }
 
-void solvers(Results& results) {
+void solvers(const std::string& folder, Results& results) {
   for (const Case& c : cases()) {
-    const Truth truth(c.scene, c.kappa);
+    const Truth truth(c.scene, c.kappa, folder);
     for (const Solver solver :
          {Solver::kaczmarz, Solver::coloured_kaczmarz, Solver::minres, Solver::minres_multigrid})
       for (const int n : {50, 100, 200, 400}) {
@@ -125,21 +126,25 @@ void solvers(Results& results) {
 int main(int argc, char** argv) try {
   using namespace drumhead::bench;
   const std::string_view what = argc > 1 ? argv[1] : "";
+  const std::string folder = truth_folder(argc, argv);
   const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
-  const bool sized = what == "table1" || what == "precision";
-  if (!(sized && (argc == 2 || large)) &&
-      !(argc == 2 && (what == "tolerances" || what == "solvers"))) {
+  const bool judged = argc == 4 && !folder.empty();
+  const bool known = what == "table1"                           ? argc == 2 || large
+                     : what == "precision" || what == "solvers" ? argc == 2 || judged
+                                                                : what == "tolerances" && argc == 2;
+  if (!known) {
     std::fputs(
-        "usage: speed_bench table1|precision [--large]\n"
-        "       speed_bench tolerances|solvers\n",
+        "usage: speed_bench table1 [--large]\n"
+        "       speed_bench precision|solvers [--truth FOLDER]\n"
+        "       speed_bench tolerances\n",
         stderr);
     return 2;
   }
   Results results(argc, argv);
   if (what == "table1") table1(large, results);
-  if (what == "precision") precision(large, results);
+  if (what == "precision") precision(folder, results);
   if (what == "tolerances") tolerances(results);
-  if (what == "solvers") solvers(results);
+  if (what == "solvers") solvers(folder, results);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "speed_bench: %s\n", error.what());

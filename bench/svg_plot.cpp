@@ -12,9 +12,11 @@
 namespace drumhead::bench {
 namespace {
 
-constexpr double kWidth = 790, kHeight = 400;
-constexpr double kLeft = 66, kRight = 280, kTop = 36, kBottom = 50;
+constexpr double kWidth = 760, kHeight = 410;
+constexpr double kLeft = 68, kRight = 296, kTop = 36, kBottom = 54;
 constexpr double kMark = 4.0, kLine = 18.0;
+// Names of ticks and labels of points closer than this are left out.
+constexpr double kTickApart = 25.0, kLabelApart = 26.0;
 
 constexpr int kLooks = 13;
 // After Okabe and Ito's colours, which people with any colour sense tell apart, darker on white and
@@ -175,10 +177,13 @@ class Drawing {
     if (plot_.x_at_points)
       for (const double x : x_of_points()) ticks.push_back({x, format("%.4g", x)});
     if (ticks.empty()) ticks = x_.ticks();
+    double named = -kTickApart;
     for (const auto& [value, name] : ticks) {
       const double x = x_.at(value);
       line(name.empty() ? "grid fine" : "grid", x, kTop, x, bottom);
-      if (!name.empty()) text(x, bottom + 16, "middle", "", name);
+      if (name.empty() || x - named < kTickApart) continue;
+      text(x, bottom + 17, "middle", "", name);
+      named = x;
     }
     for (const auto& [value, name] : y_.ticks()) {
       const double y = y_.at(value);
@@ -196,6 +201,7 @@ class Drawing {
   void add_series(const PlotSeries& series) {
     std::string path, marks;
     bool pen_down = false;
+    double label_x = -kWidth, label_y = 0.0;
     for (const PlotPoint& point : series.points) {
       // A value that does not exist interrupts the line.
       if (!x_.shows(point.x) || !y_.shows(point.y)) {
@@ -211,9 +217,11 @@ class Drawing {
                     series.name + (point.label.empty() ? "" : ", " + point.label) + ": " + x_value +
                         "; " + format("%.3g", point.y)) +
                "\n";
-      if (!point.label.empty())
-        marks += format("<text x=\"%.1f\" y=\"%.1f\" class=\"label\">", x + 6, y - 5) +
-                 html::escaped(point.label) + "</text>\n";
+      if (point.label.empty() || std::hypot(x - label_x, y - label_y) < kLabelApart) continue;
+      marks += format("<text x=\"%.1f\" y=\"%.1f\" class=\"label\">", x + 6, y - 5) +
+               html::escaped(point.label) + "</text>\n";
+      label_x = x;
+      label_y = y;
     }
     if (series.line != PlotSeries::Line::none)
       add(format("<path class=\"line s%d%s\" d=\"", series.look, dashes(series.line)) + path +
@@ -266,11 +274,11 @@ std::string svg_file_of(const SvgPlot& plot) {
 }
 
 std::string plot_style() {
-  return ".plot{font:12px system-ui,-apple-system,'Segoe UI',sans-serif}" +
+  return ".plot{font:13px system-ui,-apple-system,'Segoe UI',sans-serif}" +
          scheme("#24292f", "#6b7178", "#d8dce1", "#fff", kLight) +
          "@media (prefers-color-scheme:dark){" +
          scheme("#e4e6e9", "#9aa0a8", "#3d444d", "#17191c", kDark) + "}" +
-         ".plot .title{font-size:14px;font-weight:600}.plot .label{font-size:10px}"
+         ".plot .title{font-size:15px;font-weight:600}.plot .label{font-size:11px}"
          ".plot .fine{opacity:.45}"
          ".plot .line{stroke-width:2;fill:none;stroke-linejoin:round}"
          ".plot .dashed{stroke-dasharray:7 4}.plot .dotted{stroke-dasharray:2 4}"

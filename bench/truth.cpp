@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "solution_values.h"
 #include "support/radial_reference.h"
@@ -12,9 +17,6 @@
 namespace drumhead::bench {
 namespace {
 
-// Algebraic error of the reference, as a share of the picture: 0.003 px. Single precision does not
-// hold much less on that lattice.
-constexpr double kTolerance = 3e-6;
 constexpr double kInner = .22, kOuter = .40;  // the roundabout's circles
 
 /// Displacements of the exact roundabout, turned by 90°, at the nodes of the n × n lattice.
@@ -31,21 +33,76 @@ void fill_exact(double kappa, int n, std::vector<double>& u, std::vector<double>
     }
 }
 
+constexpr std::size_t kNodes = std::size_t(Truth::kFinest + 1) * (Truth::kFinest + 1);
+
+/// Whether the file was there.
+bool read(const std::string& file, std::vector<double>& u, std::vector<double>& v) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return false;
+  for (std::vector<double>* field : {&u, &v}) {
+    field->resize(kNodes);
+    stream.read(reinterpret_cast<char*>(field->data()), std::streamsize(8 * kNodes));
+  }
+  if (!stream || stream.peek() != std::ifstream::traits_type::eof())
+    throw std::runtime_error(file + ": not a reference, remove it");
+  return true;
+}
+
+void write(const std::string& file, const std::vector<double>& u, const std::vector<double>& v) {
+  std::ofstream stream(file + ".part", std::ios::binary);
+  for (const std::vector<double>* field : {&u, &v})
+    stream.write(reinterpret_cast<const char*>(field->data()), std::streamsize(8 * kNodes));
+  stream.close();
+  if (!stream) throw std::runtime_error(file + ": cannot be written");
+  std::filesystem::rename(file + ".part", file);
+}
+
 }  // namespace
 
-Truth::Truth(const scenes::Scene& scene, double kappa) : exact_(scene.name.starts_with("S2")) {
-  if (exact_) {
+/// The algebraic error as a share of the picture: single precision does not hold much less there.
+struct Truth::Reference {
+  int cells;
+  double tolerance;
+};
+
+std::string truth_folder(int argc, char** argv) {
+  for (int k = 1; k + 1 < argc; ++k)
+    if (std::string_view(argv[k]) == "--truth") return argv[k + 1];
+  return {};
+}
+
+Truth::Truth(const scenes::Scene& scene, double kappa, const std::string& folder)
+    : most_cells_(kFinest) {
+  if (scene.name.starts_with("S2")) {
     fill_exact(kappa, kFinest, u_, v_);
     return;
   }
-  multigrid::Solution solution = multigrid::solve(
-      scenes::problem(scene, kFinest, kappa),
-      {.curve_method = multigrid::CurveMethod::conforming, .tolerance_px = kTolerance});
+  if (folder.empty()) {
+    solve(scene, kappa, {kFinest, 3e-6});
+    most_cells_ = kFinest / 4;
+    return;
+  }
+  char name[64];
+  std::snprintf(name, sizeof name, "/%s_kappa_%g", scene.name.c_str(), kappa);
+  if (read(folder + name, u_, v_)) return;
+  solve(scene, kappa, scene.name.starts_with("S1") ? Reference{6400, 2e-5} : Reference{3200, 3e-6});
+  write(folder + name, u_, v_);
+}
+
+void Truth::solve(const scenes::Scene& scene, double kappa, const Reference& reference) {
+  const multigrid::Solution solution = multigrid::solve(
+      scenes::problem(scene, reference.cells, kappa),
+      {.curve_method = multigrid::CurveMethod::conforming, .tolerance_px = reference.tolerance});
   if (solution.report.status != multigrid::Status::converged)
     throw std::runtime_error("the reference of " + scene.name + " ends with " +
                              multigrid::name(solution.report.status));
-  u_ = std::move(solution.u_px);
-  v_ = std::move(solution.v_px);
+  const std::size_t row = std::size_t(reference.cells) + 1;
+  const auto stride = std::size_t(reference.cells / kFinest);
+  for (std::size_t j = 0; j <= kFinest; ++j)
+    for (std::size_t i = 0; i <= kFinest; ++i) {
+      u_.push_back(solution.u_px[stride * (j * row + i)]);
+      v_.push_back(solution.v_px[stride * (j * row + i)]);
+    }
 }
 
 Truth::Error Truth::error(int n, std::span<const double> u, std::span<const double> v) const {
@@ -67,6 +124,16 @@ Truth::Error Truth::error(int n, std::span<const double> u, std::span<const doub
   return error;
 }
 
-int Truth::most_cells() const { return exact_ ? kFinest : kFinest / 4; }
+std::array<double, 2> Truth::at(double x, double y) const {
+  const auto cell = [](double along) { return std::clamp(int(along * kFinest), 0, kFinest - 1); };
+  const int i = cell(x), j = cell(y);
+  const double s = x * kFinest - i, t = y * kFinest - j;
+  const auto blend = [&](const std::vector<double>& field) {
+    const double* lower = &field[std::size_t(j) * (kFinest + 1) + std::size_t(i)];
+    const double* upper = lower + kFinest + 1;
+    return (1 - t) * ((1 - s) * lower[0] + s * lower[1]) + t * ((1 - s) * upper[0] + s * upper[1]);
+  };
+  return {x + blend(u_), y + blend(v_)};
+}
 
 }  // namespace drumhead::bench
