@@ -102,10 +102,15 @@ SceneLevels<T>& KeptLevels::Contents::levels(LevelsKey key) {
   return **own;
 }
 
-KeptLevels::KeptLevels() : contents_(std::make_unique<Contents>()) {}
+KeptLevels::KeptLevels() = default;
 KeptLevels::~KeptLevels() = default;
 KeptLevels::KeptLevels(KeptLevels&&) noexcept = default;
 KeptLevels& KeptLevels::operator=(KeptLevels&&) noexcept = default;
+
+KeptLevels::Contents& KeptLevels::contents() {
+  if (!contents_) contents_ = std::make_unique<Contents>();
+  return *contents_;
+}
 
 template class SceneLevels<float>;
 template class SceneLevels<double>;

@@ -73,7 +73,7 @@ class KeptLevels {
   KeptLevels& operator=(KeptLevels&&) noexcept;
 
   struct Contents;  ///< the solver's own
-  Contents& contents() { return *contents_; }
+  Contents& contents();
 
  private:
   std::unique_ptr<Contents> contents_;
