@@ -25,7 +25,7 @@ foreach(name fused isa properties reduce threads transfer)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_fields LABEL unit)
 endforeach()
-foreach(name coarsen conforming conforming_rules curve cut_cells field lattice mask material)
+foreach(name coarsen conforming conforming_rules curve cut_cells edited_curves field lattice mask material)
   drumhead_test(NAME grid_${name}_test SOURCES grid_${name}_test.cpp
     LINK drumhead::grid LABEL unit)
 endforeach()
