@@ -87,7 +87,7 @@ std::string list_of(const std::vector<std::string>& sentences) {
 
 std::string lost(const Measurements& measured) {
   // Long lists are folded, so that the short ones are read.
-  constexpr std::size_t kShown = 12;
+  constexpr std::size_t kShown = 20;
   std::string html;
   for (const Losses& entry : losses(measured)) {
     html += "<h3>" + escaped(entry.where) + "</h3>\n";
@@ -132,7 +132,8 @@ std::string page_of(const Measurements& measured, const std::string& pictures) {
     parts[std::string("plots_") + section] = figures(drawn, section);
   std::string others;
   const std::string placed =
-      " table1 table1_memory precision tolerances rates warps stability study stability_all ";
+      " table1 table1_memory precision tolerances rates warps warps_short stability study "
+      "stability_all ";
   for (const Sheet& sheet : sheets(measured)) {
     if (placed.find(" " + sheet.id + " ") == std::string::npos)
       others += html_with_title(sheet);

@@ -119,6 +119,7 @@ bool run_rival(const WarpScene& scene, const Rival& rival, double spacing, Resul
   }
   Json row = row_of(scene, rival.name, solution, seconds, quality(scene, solution, warp));
   row["points"] = points.from.size();
+  row["spacing_px"] = spacing;
   results.row("warps", row);
   if (show) show(file_name(rival.name), solution);
   return true;
