@@ -149,6 +149,23 @@ Losses same_lattice(const Rows& rows) {
   return found;
 }
 
+Losses folds(const Rows& rows) {
+  Losses found{"Folds on as many cells (cells with a folded corner; of a mesh: triangles)", {}};
+  for (const Json& peer : rows) {
+    if (is_ours(peer) || !solved(peer)) continue;
+    std::string ours;
+    for (const Json& row : rows)
+      if (is_default(row) && solved(row) && same(row, peer, {"scene", "kappa", "n"}) &&
+          value(peer, "folded") < value(row, "folded"))
+        list(ours, way_of(row) + " " + figure(value(row, "folded")));
+    if (!ours.empty())
+      found.words.push_back(scene_of(peer) + ", " + figure(value(peer, "n")) +
+                            "²: " + text(peer, "method") + " " + figure(value(peer, "folded")) +
+                            "; drumhead, " + ours + ".");
+  }
+  return found;
+}
+
 Losses warps(const Rows& rows) {
   Losses found{"Warps of other kinds (they solve another problem: no area is kept)", {}};
   const struct {
@@ -283,6 +300,7 @@ std::vector<Losses> losses(const Measurements& measured) {
     found.push_back(precision(all, "max_px", "Largest error"));
     found.push_back(precision(all, "gap_rms_px", "Curve gap"));
     found.push_back(same_lattice(all));
+    found.push_back(folds(all));
   }
   if (!other.empty()) found.push_back(warps(other));
   if (!linear.empty()) found.push_back(rates(linear));

@@ -22,7 +22,7 @@ class Truth {
   /// Without a folder the reference is solved on 1600² cells (seconds) and judges up to 400². With
   /// one it judges up to 1600²: of the sponge, whose tips converge slowly, on 6400² cells, of other
   /// scenes on 3200², where single precision resolves as little as their error on 1600²; read from
-  /// the folder or, if it is not there yet, solved (half a minute, 2 GB) and left there for the
+  /// the folder or, if it is not there yet, solved (half a minute, 3 GB) and left there for the
   /// next program; the disc moved at kappa 1 does not converge there. The roundabout needs neither.
   /// Throws std::runtime_error if the solve does not converge or the file is not as it should be.
   Truth(const scenes::Scene& scene, double kappa, const std::string& folder = {});
