@@ -96,6 +96,7 @@ double run_mesh(const Case& c, int n, Results& results) {
   row["newton_all"] = warp.newton;
   row["factorisations"] = warp.factorisations;
   row["bytes"] = warp.solver_bytes;
+  row["bytes_per_node"] = double(warp.solver_bytes) / double(warp.moved.size());
   row["folded"] = warp.folded;
   results.row("mesh", row);
   return warp.solved ? error.rms : std::nan("");

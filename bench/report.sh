@@ -4,7 +4,7 @@
 #     build/report/index.html     the page: plots, tables, pictures, in one file
 #     bench/tables.md             all tables
 #     bench/pictures/*.svg        the README's plots; its tables are put into README.md itself
-#   sh bench/report.sh              some 20 minutes on two quiet cores
+#   sh bench/report.sh              some 25 minutes on two quiet cores
 #   sh bench/report.sh --large      also solves at 1600² and 3200², errors up to 1600² against finer
 #                                   references, algebraic multigrid at 400², rates at 1024² (10 minutes)
 #   sh bench/report.sh --direct N   also direct solvers on the sponge at 400² (N 400) or up to 800² (N 800;
