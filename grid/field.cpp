@@ -1,13 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/field.h>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <new>
 
 namespace drumhead::grid {
 namespace {
 
-constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kAlignment = 64, kHugePage = std::size_t(1) << 21;
+
+/// A kernel walks down the rows of a dozen fields at once, each soon on another page: on pages of
+/// 4 KiB a product on 800² cells takes a tenth longer.
+std::align_val_t alignment(std::size_t bytes) {
+  return std::align_val_t(bytes < kHugePage ? kAlignment : kHugePage);
+}
+void* allocate(std::size_t bytes) {
+  void* const data = ::operator new(bytes, alignment(bytes));
+#ifdef __linux__
+  // Only pages that are filled; where the system has none for us, nothing is lost.
+  if (bytes >= kHugePage) madvise(data, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+#endif
+  return data;
+}
 
 }  // namespace
 
@@ -19,7 +37,7 @@ Field<T>::Field(int columns, int rows, MemoryMeter* meter) : meter_(meter) {
   plane_.stride = 2 * plane_.odd;
   plane_.columns = columns;
   plane_.rows = rows;
-  plane_.data = static_cast<T*>(::operator new(bytes(), std::align_val_t(kAlignment)));
+  plane_.data = static_cast<T*>(allocate(bytes()));
   if (meter_) meter_->add(bytes());
   clear();
 }
@@ -28,7 +46,7 @@ template <class T>
 Field<T>::~Field() {
   if (!plane_) return;
   if (meter_) meter_->remove(bytes());
-  ::operator delete(plane_.data, std::align_val_t(kAlignment));
+  ::operator delete(plane_.data, alignment(bytes()));
 }
 
 template <class T>

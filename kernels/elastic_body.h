@@ -56,12 +56,12 @@ template <bool kResidual, class T>
       }
       for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
         stencil.prefetch(k, 1);
-        for (const T* at : {out_x, out_y}) __builtin_prefetch(at + k + stencil.node_row, 1);
+        for (const T* at : {out_x, out_y}) ask(at + k + stencil.node_row);
         decltype(zero) hx, hy, inverse;
         stencil.apply(lane, zero, k, hx, hy, inverse);
         if constexpr (kResidual) {
-          __builtin_prefetch(fx + k + stencil.node_row);
-          __builtin_prefetch(fy + k + stencil.node_row);
+          ask(fx + k + stencil.node_row);
+          ask(fy + k + stencil.node_row);
           hx = lane.load(fx + k) - hx;
           hy = lane.load(fy + k) - hy;
         }

@@ -30,8 +30,8 @@ template <class T>
       const Range range = within(interior(d.x.columns, parity), span, parity);
       for_lanes<T>(range.begin, range.end, [&](auto lane, auto zero, int k) {
         stencil.prefetch(k, ahead);
-        for (const T* at : {fx, fy}) __builtin_prefetch(at + k + ahead * stencil.node_row);
-        if constexpr (pressure.value) __builtin_prefetch(fp + k + ahead * stencil.cell_row);
+        for (const T* at : {fx, fy}) ask(at + k + ahead * stencil.node_row);
+        if constexpr (pressure.value) ask(fp + k + ahead * stencil.cell_row);
         decltype(zero) hx, hy, inverse;
         stencil.apply(lane, zero, k, hx, hy, inverse);
         lane.store(lane.load(dx + k) + (lane.load(fx + k) - hx) * inverse, dx + k);
