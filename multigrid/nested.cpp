@@ -55,6 +55,8 @@ constexpr double kSoft = 300.0;
 // From this kappa/mu on contraction is at first better than it stays: S4, kappa 100, 100² ended
 // with .26 of the discretisation error, thought to be .08.
 constexpr double kStiff = 30.0, kStiffRate = 0.5;
+// Averaged rows below it: S4, kappa 10, 100² ended with .13, thought to be .07.
+constexpr double kAveragedRate = 0.35;
 // Conforming cells below kStiff: what a cycle leaves is volume rows that no longer move nodes, so
 // one cycle a step does, and coarser levels, which only start the next one, stop at more than the
 // finest. Milliseconds of S2 kappa 10 at 100², 200², 400², with kContent and kShare everywhere: 35,
@@ -140,6 +142,13 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 
 namespace {
 
+/// Contraction that no step of a finer level is expected to beat before one was seen.
+template <class T>
+double least_rate(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
+  if (hierarchy.traits().stiffness >= kStiff) return kStiffRate;
+  return averaged(hierarchy, options) ? kAveragedRate : 0.0;
+}
+
 /// The first state on the start level: harmonic, and for large rotations on along the load path,
 /// whose steps are returned.
 template <class T>
@@ -201,6 +210,7 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.tolerance_rms = start ? start_error * double(level.spacing) : 0.0;
   newton.tolerance_max = 0.0;
   newton.most_volume_gap = finest ? kMostVolumeGap : 0.0;
+  newton.contrast = bool(level.compliance);
 }
 
 /// What the run itself is asked for besides, once it has a state to begin with.
@@ -273,7 +283,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     const bool exact = l == 0 && options.exact;
     NewtonReport done = newton.run(
         newton_options, clamp, part_of(progress, way ? kPathShare : 0.0, exact ? kJumpShare : 1.0));
-    newton_options.least_rate = hierarchy.traits().stiffness >= kStiff ? kStiffRate : 0.0;
+    newton_options.least_rate = least_rate(hierarchy, options);
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
     if (exact && !ended_early(done.status))
       done = without_jump(hierarchy, options.solver, newton, done,

@@ -13,6 +13,7 @@
 #include "corners.h"
 #include "newton_accuracy.h"
 #include "newton_judge.h"
+#include "newton_turn.h"
 #include "volume_gap.h"
 
 namespace drumhead::multigrid {
@@ -40,6 +41,7 @@ constexpr double kModelError = 2.0, kSlow = 0.5;
 // theta was too large.
 constexpr double kUnsolved = 0.3;
 constexpr int kMostPatience = 32;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // After a shortened step linear systems are solved to this residual at least, by cycles or by GCR.
 // (Also where the norm of all equations did not show a step to be good: S1 kappa 10, 400², 912 work
 // units, 379 without.)
@@ -327,7 +329,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   Judge judge(options, report);
   LinearOptions linear_options = options.linear;
   LinearAccuracy accuracy(options);
-  Overshoot overshoot;
+  StepLength length;
+  Turn<T> turn(level_, meter_);
   Corners<T> corners(level_, options.onset);
   bool followed = false;
   const auto ended = [&](Status status) {
@@ -353,18 +356,19 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
       return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)
-                      : take_step(norm, overshoot.longest());
-    const bool shortened = step.step < overshoot.longest();
+                      : take_step(norm, length.longest());
+    const bool shortened = step.step < std::min(1.0, length.longest());
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
     if (options.adaptive && accuracy.raised_by(step, report)) continue;
-    const bool ends =
-        judge.ends_with(step, precision(), volume_gap(level_, options.most_volume_gap));
+    const double cosine = judge.uneven() ? turn.cosine_with(d) : kUnknown;
+    const bool ends = judge.ends_with(step, shortened, precision(),
+                                      volume_gap(level_, options.most_volume_gap), cosine);
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
-    overshoot.note(rms, n > 0 && !shortened && !(linear.residual <= kCareful));
+    length.note(rms, shortened, n > 0 && !(linear.residual <= kCareful), cosine);
     if (shortened) {
       linear_options.content = std::min(linear_options.content, kCareful);
       linear_options.reduction = std::min(linear_options.reduction, kCareful);

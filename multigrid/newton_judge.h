@@ -17,9 +17,12 @@ class Judge {
 
   Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
 
-  /// True if the run ends with this step; the report then has its status. `rounding`: moves below
-  /// it are noise; `volume_gap`: see NewtonReport.
-  bool ends_with(const NewtonStep& step, double rounding, double volume_gap) {
+  /// True if the run ends with this step; the report then has its status. `shortened`: the merit
+  /// did not let it have the length that was tried. `rounding`: moves below it are noise;
+  /// `volume_gap`: see NewtonReport; `cosine`: between the moves of this step and the one before,
+  /// where uneven(), else not a number.
+  bool ends_with(const NewtonStep& step, bool shortened, double rounding, double volume_gap,
+                 double cosine) {
     const double gap_before = report_.volume_gap;
     report_.volume_gap = volume_gap;
     if (only_areas_lack_) {
@@ -37,7 +40,8 @@ class Judge {
     report_.change_rms += step.dx_rms_px;
     report_.change_max += step.dx_max_px;
 
-    const bool full = step.step == 1.0;
+    // Half a step back and forth is as good as a full one.
+    const bool full = step.step == 1.0 || (uneven_ && !shortened);
     creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
     const bool gcr = options_.linear.solver == Solver::gcr;
     const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
@@ -47,12 +51,18 @@ class Judge {
       return end(Status::stalled);
     // After a larger theta a step converges more slowly: no contraction is seen from it.
     const bool comparable = step.theta >= before.theta;
-    const bool seen = !first && full && comparable && before.step == 1.0;
+    const bool seen = !first && comparable && step.step == 1.0 && before.step == 1.0;
     const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
     const bool rounded = seen && no_nearer(step, before, rounding);
     const double left = rounded ? 1.0 : std::max(rate, step.residual) / (1.0 - rate);
     report_.error_rms = left * step.dx_rms_px;
     report_.error_max = left * step.dx_max_px;
+    if (uneven_ && step.step > 0.0 && before.step > 0.0 && cosine < kAstray) {
+      report_.error_rms = kWandering * mean_move(step.dx_rms_px, step, before.dx_rms_px, before);
+      report_.error_max = kWandering * mean_move(step.dx_max_px, step, before.dx_max_px, before);
+    }
+    uneven_ = uneven_ || (options_.contrast && automatic() && seen &&
+                          step.dx_rms_px > kUneven * before.dx_rms_px);
     advance(rounding);
     // Soon after a step was shortened or theta lowered, one small step may be chance.
     calm_ = full && comparable ? calm_ + 1 : 0;
@@ -71,6 +81,10 @@ class Judge {
   /// rows) alone, without the momentum that drives the slow rest. Ends with the run or a step of 0.
   bool only_areas_lack() const { return only_areas_lack_; }
 
+  /// A step moved nodes nearly as far as the one before: the ratio of two moves may say little of
+  /// what is left, their directions are asked for, too.
+  bool uneven() const { return uneven_; }
+
   /// The share of the run that is done, as the logarithm of the error that is left tells it: 0 for
   /// the first step's move, 1 for the error wanted. Never falls, and stays below 1.
   double share_done() const { return share_; }
@@ -88,6 +102,11 @@ class Judge {
   static constexpr int kMostCreeping = 5;
   // Share of the volume gap that a step for areas leaves if it is of no use.
   static constexpr double kInVain = 0.9;
+  // At tips beside contrast moves alternate in size and turn back in part: a ratio of two moves is
+  // chance there, and the worse of two claims up to nine times the last move. What steps that point
+  // elsewhere than the one before leave, in last moves: S3, from the fifth on, 100² .6 to 2.3, 200²
+  // 3 to 6, 400² 1.6 to 3.3, 800² 1.4 to 3. S3 800² takes 17 steps by ratios alone, 11 so.
+  static constexpr double kUneven = 2.0 / 3.0, kAstray = 0.5, kWandering = 2.5;
   // What each step takes at least of the share that is not done, and where the error's part ends:
   // areas, corners or a second small step may be wanting.
   static constexpr double kLeastShare = 0.06, kMostShare = 0.8;
@@ -125,8 +144,15 @@ class Judge {
   /// Where no tolerance was asked for: a step as long as the one before, of the size that rounded
   /// states leave in the equations, says that there is nothing more to gain.
   bool no_nearer(const NewtonStep& step, const NewtonStep& before, double rounding) const {
-    return options_.share_of_change > 0.0 && options_.tolerance_rms == 0.0 &&
-           step.dx_rms_px <= kRounded * rounding && step.dx_rms_px >= kNoNearer * before.dx_rms_px;
+    return automatic() && step.dx_rms_px <= kRounded * rounding &&
+           step.dx_rms_px >= kNoNearer * before.dx_rms_px;
+  }
+  /// No tolerance was asked for.
+  bool automatic() const { return options_.share_of_change > 0.0 && options_.tolerance_rms == 0.0; }
+  /// Geometric mean of what two steps would have moved at full length.
+  static double mean_move(double move, const NewtonStep& step, double move_before,
+                          const NewtonStep& before) {
+    return std::sqrt(move / step.step * (move_before / before.step));
   }
   bool areas_done() const {
     return options_.most_volume_gap == 0.0 || report_.volume_gap <= options_.most_volume_gap;
@@ -147,28 +173,36 @@ class Judge {
   NewtonReport& report_;
   int creeping_ = 0, settled_ = 0, unsolved_ = 0, calm_ = kCalm;
   double seen_before_ = 0.0, share_ = 0.0;
-  bool only_areas_lack_ = false;
+  bool only_areas_lack_ = false, uneven_ = false;
   bool areas_fail_ = false;  // the last step for areas alone was not taken
 };
 
-/// A clamped Hessian may overshoot by twice, back and forth for ever, most at tips: half a step
-/// ends in the middle.
-class Overshoot {
+/// Lengths of the steps tried. A clamped Hessian may overshoot by twice, back and forth for ever,
+/// most at tips: half a step ends in the middle. Or it is too stiff for one mode, and steps of one
+/// direction creep: the step then goes where they would end.
+class StepLength {
  public:
-  /// The step length that is tried next.
+  /// What is tried next.
   double longest() const { return longest_; }
 
-  /// Notes a step by its full move; `counts`: it can have undone the one before.
-  void note(double rms, bool counts) {
-    const bool undone = counts && rms > kBackAndForth * rms_before_;
-    in_circles_ = undone && longest_ == 1.0 ? in_circles_ + 1 : 0;
-    longest_ = in_circles_ >= 2 ? 0.5 : 1.0;
+  /// Notes a step by its full move; `shortened`: see Judge; `counts`: it can have undone the one
+  /// before; `cosine`: between the two moves, not a number where it is not known.
+  void note(double rms, bool shortened, bool counts, double cosine) {
+    const double rate = rms / rms_before_;
+    const bool undone = counts && !shortened && rate > kBackAndForth;
+    const bool aligned = !shortened && longest_ == 1.0 && cosine > kAligned;
+    const bool creeps = aligned && rate > kSlow && rate < 1.0;
+    in_circles_ = undone && !creeps && longest_ == 1.0 ? in_circles_ + 1 : 0;
+    longest_ = creeps ? std::fmin(1.0 / (1.0 - rate), kLongest) : in_circles_ >= 2 ? 0.5 : 1.0;
     rms_before_ = rms;
   }
 
  private:
   // A full step this large beside the one before may well undo it; two in a row do.
   static constexpr double kBackAndForth = 0.9;
+  // Creeping: S3, conforming, 400² 23 steps without longer ones, 16 so; 800² 18 and 14. The merit
+  // lets most of them be twice as long.
+  static constexpr double kAligned = 0.9, kSlow = 0.75, kLongest = 8.0;
   double longest_ = 1.0, rms_before_ = 0.0;
   int in_circles_ = 0;
 };
