@@ -11,6 +11,7 @@
 #include "curve_patch.h"
 #include "hierarchy.h"
 #include "kaczmarz_smoother.h"
+#include "part_patch.h"
 
 namespace drumhead::multigrid {
 
@@ -35,6 +36,10 @@ class Cycle {
 
   /// Relaxes all rows along the curves at once, too, as exact rows need (curve_patch.h).
   void relax_patches(grid::MemoryMeter& meter);
+
+  /// Relaxes the parts of special cells all at once, too, after the coarse correction
+  /// (part_patch.h).
+  void relax_parts(grid::MemoryMeter& meter);
 
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
   /// the curve forces of dq afterwards (and must do so before, if not from zero).
@@ -62,7 +67,8 @@ class Cycle {
   T clamp_width_ = T(1);
   CoarseSolver<T> bottom_;
   std::optional<KaczmarzSmoother<T>> smoother_;
-  std::vector<CurvePatch<T>> patches_;  ///< of all levels but the bottom, from the top
+  std::vector<CurvePatch<T>> patches_;      ///< of all levels but the bottom, from the top
+  std::vector<PartPatch<T>> part_patches_;  ///< likewise
   std::vector<T> residual_;
   bool relaxes_band_ = false, curves_again_ = true;
 };

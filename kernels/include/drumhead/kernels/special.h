@@ -175,6 +175,7 @@ class SpecialRows {
               end = visit_begin_[std::size_t(2 * j + parity) + 1];
     return {visit_.data() + begin, std::size_t(end - begin)};
   }
+  int near_count() const { return near_begin_.back(); }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
   const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
   /// Whether any neighbours are joined by a jump.
