@@ -38,8 +38,8 @@ struct NewtonOptions {
   double onset = 0.0;  ///< of corners' one-sided term at the end (corners.h)
   /// No step without such a model is expected to contract by more than this.
   double least_rate = 0.0;
-  /// A mask of kappa: steps may converge unevenly (newton_judge.h). Elsewhere the same rules gain
-  /// nothing and end S5, kappa/mu 1e4, 128², conforming, where areas have .02 of the energy left.
+  /// A mask of kappa: steps may converge unevenly (newton_judge.h). Without one the same rules
+  /// end S5, kappa/mu 1e4, 128², conforming, with 2 ‰ more energy than it may have.
   bool contrast = false;
   LinearOptions linear;
   /// Exact rows: linear.reduction is the residual wanted at first, less where Newton's method

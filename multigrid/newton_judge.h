@@ -111,8 +111,10 @@ class Judge {
   // areas, corners or a second small step may be wanting.
   static constexpr double kLeastShare = 0.06, kMostShare = 0.8;
   // Moves that never end, in units of `rounding`, and their ratios: S2 kappa 10, 800² 7 to 10, .8
-  // to 1.3; 1600² 6 to 9; S4 1600² 6 to 15.
+  // to 1.3; 1600² 6 to 9; S4 1600² 6 to 15. S4 3200² 17 to 41, long waves whose longest move is 4
+  // to 7 times their RMS; where nodes by the curves still settle it is 10 to 60.
   static constexpr double kRounded = 20.0, kNoNearer = 0.9;
+  static constexpr double kRoundedWaves = 60.0, kWaves = 8.0;
   // So many full steps make up for a shortened one.
   static constexpr int kCalm = 10;
 
@@ -144,7 +146,8 @@ class Judge {
   /// Where no tolerance was asked for: a step as long as the one before, of the size that rounded
   /// states leave in the equations, says that there is nothing more to gain.
   bool no_nearer(const NewtonStep& step, const NewtonStep& before, double rounding) const {
-    return automatic() && step.dx_rms_px <= kRounded * rounding &&
+    const bool waves = step.dx_max_px <= kWaves * step.dx_rms_px;
+    return automatic() && step.dx_rms_px <= (waves ? kRoundedWaves : kRounded) * rounding &&
            step.dx_rms_px >= kNoNearer * before.dx_rms_px;
   }
   /// No tolerance was asked for.

@@ -203,6 +203,17 @@ TEST(ConformingSolver, EndsWhereRoundingLetsNodesComeNoCloser) {
   EXPECT_TRUE(turned.notes.empty());
 }
 
+// On 3200² cells what rounding leaves are long waves: the moved disc took 40 steps of them.
+TEST(ConformingSolver, EndsWhereWavesOfRoundingAreLeft) {
+  const multigrid::SolveReport report =
+      multigrid::solve(scenes::problem(scenes::shift(scenes::kStudyOffset), 3200, 10.0),
+                       {.curve_method = multigrid::CurveMethod::conforming})
+          .report;
+  EXPECT_EQ(report.status, multigrid::Status::converged);
+  EXPECT_LE(report.levels.back().newton.size(), 8u);
+  EXPECT_LT(report.algebraic_rms_px, 3e-6);
+}
+
 TEST(ConformingSolver, RefusesExactRows) {
   const multigrid::WarpProblem problem = scenes::problem(scenes::shift(), 32, 1.0);
   multigrid::SolverOptions options;
