@@ -104,7 +104,7 @@ if [ "$measure" ]; then
   stage tolerances speed_bench tolerances
   stage solvers speed_bench solvers $truth
   stage curves curves_bench $truth
-  stage solve solve_bench $large
+  stage solve solve_bench
   stage drag drag_bench
   stage mesh mesh_bench $truth
   stage amg amg_bench $large $truth
@@ -121,7 +121,7 @@ if [ "$measure" ]; then
   stage direct_threads direct_bench --sponge --threads "$cores" 50 100 150 200 300
   if [ "$direct" ]; then
     stage direct_large direct_bench --sponge $truth $direct
-    stage direct_large_threads direct_bench --sponge --threads "$cores" $direct
+    stage direct_large_threads direct_bench --sponge --threads "$cores" 400
   fi
   stage resample resample_bench
   stage kernels kernels_bench
