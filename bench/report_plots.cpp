@@ -18,7 +18,7 @@ struct Peer {
   const char* part;  // of the name
   int look;
 };
-constexpr Peer kPeers[] = {{"paper, PARDISO", 7},
+constexpr Peer kPeers[] = {{"paper, PARDISO", 8},
                            {"paper", 6},
                            {"triangle mesh", 4},
                            {"conforming", 0},
