@@ -33,20 +33,9 @@ struct OneSidedSquare {
 struct OneSided {
   template <class T, class B>
   static Moduli<B> at(const Parameters<B>& c, B ra, B rb) {
-    const B zero(T(0)), half(T(0.5));
-    const OneSidedSquare<T, B> square(half * (ra * ra - rb * rb) - c.eps + c.shift, c.onset);
-    const B pressure = c.corner * square.slope, kappa = c.corner * square.curvature;
-    Moduli<B> m;
-    m.shape = zero;
-    m.volume = c.corner * square.value;
-    m.a = pressure * ra;
-    m.b = zero - pressure * rb;
-    m.twist = pressure;
-    m.flip = zero - pressure;
-    m.aa = m.twist + kappa * ra * ra;
-    m.bb = m.flip + kappa * rb * rb;
-    m.ab = zero - kappa * ra * rb;
-    return m;
+    const OneSidedSquare<T, B> square(B(T(0.5)) * (ra * ra - rb * rb) - c.eps + c.shift, c.onset);
+    return moduli_of_volume<T>(c.corner * square.value, c.corner * square.slope,
+                               c.corner * square.curvature, ra, rb);
   }
 };
 

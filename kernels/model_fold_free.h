@@ -34,19 +34,9 @@ struct FoldFreeCorner {
 struct FoldFreeCentre {
   template <class T, class B>
   static Moduli<B> at(const Parameters<B>& c, B ra, B rb) {
-    const B zero(T(0)), half(T(0.5)), kappa = B(T(4)) * c.kappa;
+    const B half(T(0.5)), kappa = B(T(4)) * c.kappa;
     const B strain = half * (ra * ra - rb * rb) - B(T(1)), pressure = kappa * strain;
-    Moduli<B> m;
-    m.shape = zero;
-    m.volume = half * pressure * strain;
-    m.a = pressure * ra;
-    m.b = zero - pressure * rb;
-    m.twist = pressure;
-    m.flip = zero - pressure;
-    m.aa = m.twist + kappa * ra * ra;
-    m.bb = m.flip + kappa * rb * rb;
-    m.ab = zero - kappa * ra * rb;
-    return m;
+    return moduli_of_volume<T>(half * pressure * strain, pressure, kappa, ra, rb);
   }
   template <class T, class B>
   static B floor(const Parameters<B>& c, B width) {

@@ -48,6 +48,23 @@ Moduli<B> moduli(const InvariantDerivatives<B>& psi, B ra, B rb) {
   return m;
 }
 
+/// Those of a density of J = (ra² − rb²)/2 alone, with its value and derivatives Ψ_J, Ψ_JJ.
+template <class T, class B>
+Moduli<B> moduli_of_volume(B value, B first, B second, B ra, B rb) {
+  const B zero(T(0));
+  Moduli<B> m;
+  m.shape = zero;
+  m.volume = value;
+  m.a = first * ra;
+  m.b = zero - first * rb;
+  m.twist = first;
+  m.flip = zero - first;
+  m.aa = m.twist + second * ra * ra;
+  m.bb = m.flip + second * rb * rb;
+  m.ab = zero - second * ra * rb;
+  return m;
+}
+
 /// The Hessian's eigenvalues are raised to at least `floor`: those of the 2×2 block, twist and
 /// flip.
 template <class T, class B>

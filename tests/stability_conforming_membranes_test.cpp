@@ -5,55 +5,30 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
-#include <drumhead/kernels/model.h>
-
+#include "support/membrane_cases.h"
 #include "support/oracle_conforming_solid.h"
-#include "support/scene_problem.h"
 
 namespace drumhead {
 namespace {
 
 using kernels::Model;
 
-struct Case {
-  const char* name;
-  scenes::Scene scene;
-  Model model;
-  double kappa = 1.0;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+using scenes::case_name, scenes::s2;
+using Case = scenes::MembraneCase;
 
 multigrid::Solution solved(const Case& c, int n, double tolerance_cells) {
-  multigrid::WarpProblem problem = scenes::problem(c.scene, n, c.kappa);
-  problem.material.model = c.model;
-  return multigrid::solve(problem, {.curve_method = multigrid::CurveMethod::conforming,
-                                    .tolerance_px = tolerance_cells / n});
+  return scenes::solved(c, n, tolerance_cells,
+                        {.curve_method = multigrid::CurveMethod::conforming});
 }
 
-const scenes::Scene s1 = scenes::sponge(scenes::kStudyOffset),
-                    s2 = scenes::roundabout(45.0, scenes::kStudyOffset),
-                    s4 = scenes::shift(scenes::kStudyOffset);
-
 std::vector<Case> cases() {
-  return {{"S1corotated", s1, Model::corotated},
-          {"S2corotated", s2, Model::corotated},
-          {"S4corotated", s4, Model::corotated},
-          {"S1linear", s1, Model::linear},
-          {"S2linear", s2, Model::linear},
-          {"S4linear", s4, Model::linear},
-          {"S1neohookean", s1, Model::neohookean},
-          {"S2neohookean", s2, Model::neohookean},
-          {"S4neohookean", s4, Model::neohookean},
-          {"S1arap", s1, Model::arap},
-          {"S2arap", s2, Model::arap},
-          {"S4arap", s4, Model::arap},
-          {"S2stvk", s2, Model::stvk},
-          {"S1eq8", s1, Model::arap, 1e4},
-          {"S2eq8", s2, Model::arap, 1e4},
-          {"S4eq8", s4, Model::arap, 1e4}};
+  std::vector<Case> all = scenes::settling_membranes();
+  std::ranges::copy(scenes::one_sided_membranes(), std::back_inserter(all));
+  return all;
 }
 
 class ConformingMembrane : public testing::TestWithParam<Case> {};
@@ -107,7 +82,6 @@ TEST_P(DirectConformingMembrane, HasTheLatticeOfADirectNewtonsMethod) {
   EXPECT_LT(worst, 1e-6) << "cells";
 }
 
-const auto case_name = [](const auto& info) { return info.param.name; };
 INSTANTIATE_TEST_SUITE_P(Scenes, ConformingMembrane, testing::ValuesIn(cases()), case_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, DirectConformingMembrane, testing::ValuesIn(direct_cases()),
                          case_name);
