@@ -8,6 +8,7 @@
 // some GB and minutes.
 #include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace drumhead::bench {
 namespace {
 
 constexpr int kRepeats = 5;
+constexpr int kWarmUp = 256;  // unknowns
 
 struct Case {
   scenes::Scene scene;
@@ -39,9 +41,18 @@ double our_seconds(const Case& c, int n, int threads) {
   return least;
 }
 
+/// A solution by each solver outside the clock: its first one loads libraries and starts threads.
+void warm_up() {
+  const Eigen::MatrixXd dense =
+      Eigen::MatrixXd::Identity(kWarmUp, kWarmUp) + Eigen::MatrixXd::Ones(kWarmUp, kWarmUp);
+  const Eigen::SparseMatrix<double> matrix = dense.sparseView();
+  for (const auto& solver : direct_solvers())
+    if (!solver->solve(matrix, Eigen::VectorXd::Ones(kWarmUp)).allFinite())
+      throw std::runtime_error(std::string(solver->name()) + " cannot solve a small system");
+}
+
 void run(const Case& c, DirectSolver& solver, int n, int threads, Results& results) {
   const double ours = our_seconds(c, n, threads);
-  set_blas_threads(threads);
   const NestedNewton direct =
       nested_newton(c.scene, n, c.kappa, [&](const NewtonSystem& system) -> Eigen::VectorXd {
         return solver.solve(system.linear.matrix, -system.linear.gradient);
@@ -110,6 +121,8 @@ int main(int argc, char** argv) try {
   }
   const std::string folder = bench::truth_folder(argc, argv);
   bench::Results results(argc, argv);
+  bench::set_blas_threads(threads);
+  bench::warm_up();
   for (const auto& [scene, kappa] : cases) {
     const bench::Case c{scene, kappa, bench::Truth(scene, kappa, folder)};
     for (const int n : lattices)
