@@ -42,10 +42,8 @@ constexpr double kModelError = 2.0, kSlow = 0.5;
 constexpr double kUnsolved = 0.3;
 constexpr int kMostPatience = 32;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-// After a shortened step linear systems are solved to this residual at least, by cycles or by GCR.
-// (Also where the norm of all equations did not show a step to be good: S1 kappa 10, 400², 912 work
-// units, 379 without.)
-constexpr double kCareful = 0.1;
+// A linear solution counts as accurate.
+constexpr double kAccurate = 0.1;
 
 }  // namespace
 
@@ -302,7 +300,7 @@ LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
 template <class T>
 void Newton<T>::adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
                       double norm_before) const {
-  const bool accurate = step.residual <= kCareful;
+  const bool accurate = step.residual <= kAccurate;
   if (clamp.patience > 0) {
     if (step.residual > kUnsolved && clamp.theta > 1.0) {
       clamp.patience = std::min(2 * clamp.patience, kMostPatience);
@@ -346,7 +344,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     set_clamp(clamp.theta);
     const bool areas = judge.only_areas_lack();
     const double norm = areas ? drop_momentum() : norm_;
-    if (options.adaptive) accuracy.set(norm, linear_options);
+    accuracy.set(norm, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
     const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
@@ -361,18 +359,15 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
-    if (options.adaptive && accuracy.raised_by(step, report)) continue;
-    const double cosine = judge.uneven() ? turn.cosine_with(d) : kUnknown;
-    const bool ends = judge.ends_with(step, shortened, precision(),
+    if (!areas && accuracy.raised_by(step, shortened, report)) continue;
+    const bool directions = (!options.adaptive && length.slow(rms)) || judge.uneven();
+    const double cosine = directions ? turn.cosine_with(d) : kUnknown;
+    const bool ends = judge.ends_with(step, rms, shortened, precision(),
                                       volume_gap(level_, options.most_volume_gap), cosine);
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
-    length.note(rms, shortened, n > 0 && !(linear.residual <= kCareful), cosine);
-    if (shortened) {
-      linear_options.content = std::min(linear_options.content, kCareful);
-      linear_options.reduction = std::min(linear_options.reduction, kCareful);
-    }
+    length.note(rms, shortened, n > 0 && !(linear.residual <= kAccurate), cosine);
     followed = corners.act() && !shortened && (ends || corners.followed(norm_));
     if (followed) {
       corners.move();

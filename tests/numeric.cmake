@@ -40,6 +40,8 @@ foreach(name cases conforming_cases degenerate stiff)
     SOURCES stability_${name}_test.cpp support/hard_cases.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL numeric)
 endforeach()
+drumhead_test(NAME stability_random_test
+  SOURCES stability_random_test.cpp LINK drumhead::multigrid LABEL numeric)
 drumhead_test(NAME stability_memory_test
   SOURCES stability_memory_test.cpp LINK drumhead::multigrid LABEL numeric)
 drumhead_test(NAME stability_conforming_test
