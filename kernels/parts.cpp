@@ -28,14 +28,14 @@ void move_along_parts(const LevelSystem<T>& level, const double* t) {
         const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
         Four<T> x = at_x.load(), y = at_y.load();
         const Four<T> inverse(visit.inverse);
-        for_parts(rows.cells(), visit.cell, [&](int p) {
+        for (int p = visit.part_begin; p < visit.part_end; ++p) {
           const T step = T(t[p]);
           d.listed[p] -= step;
           const Four<T> move = inverse * Four<T>(step);
           x = x + Four<T>(rows.part(p).bx) * move;
           y = y + Four<T>(rows.part(p).by) * move;
           if (rows.soft()) move_curve_of_part(*rows.soft(), p, step, d.curve);
-        });
+        }
         at_x.store(x);
         at_y.store(y);
       }

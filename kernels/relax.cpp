@@ -143,8 +143,7 @@ class Relaxation {
   void volume(int parity, bool reverse, T* kept, int j) const {
     auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, {}, j); };
     if (!special_) return sweep();
-    keep_special_row(*special_, level_.f, d_, parity, j, kept, sweep);
-    relax_part_row(*special_, f_, d_, parity, reverse, j);
+    relax_volume_and_parts(*special_, level_.f, d_, parity, reverse, j, kept, sweep);
   }
   void parts(bool reverse, int j) const {
     for (const int column : {int(reverse), int(!reverse)})

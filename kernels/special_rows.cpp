@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "soft_sweeps.h"
@@ -34,6 +35,8 @@ constexpr double kPartJump = 4.0;
 
 /// The corner of cell q of sw, se, nw, ne that is the node itself.
 constexpr int corner_towards_node(int q) { return 3 - q; }
+/// The quadrant of a node in which the cell lies whose corner it is.
+constexpr int quadrant(int corner) { return 3 - corner; }
 
 /// Sorts the columns that were listed since row j began by parity and halves them.
 void halve(std::vector<int>& columns, std::vector<int>& begin, int j) {
@@ -52,14 +55,14 @@ T spring(const SpecialCells<T>& cells, int i, int j) {
   return T(0);
 }
 
-/// visit(vertex index, its corner, part) for the vertices of cell `n`'s parts that are corners.
+/// visit(corner, part) for the corners of cell `n` that are a part's vertex.
 template <class T, class F>
 void for_corner_vertices(const SpecialCells<T>& cells, int n, F&& visit) {
   for_parts(cells, n, [&](int p) {
     for (int v = cells.vertex_begin[std::size_t(p)]; v < cells.vertex_begin[std::size_t(p) + 1];
          ++v)
       if (const int corner = cells.vertex[std::size_t(v)].vertex; corner < kFirstCrossing)
-        visit(v, corner, p);
+        visit(corner, p);
   });
 }
 
@@ -142,7 +145,8 @@ void SpecialRows<T>::list_visits() {
         if ((cells.column[std::size_t(n)] & 1) != parity) continue;
         CellVisit<T>& visit = visit_.emplace_back();
         visit.column = cells.column[std::size_t(n)];
-        visit.cell = n;
+        visit.part_begin = cells.part_begin[std::size_t(n)];
+        visit.part_end = cells.part_begin[std::size_t(n) + 1];
         for (int c = 0; c < 4; ++c)
           if (const int node = unknown_corner(n, c); node >= 0)
             visit.inverse[c] = near(node).inverse;
@@ -152,26 +156,40 @@ void SpecialRows<T>::list_visits() {
 }
 
 template <class T>
+void SpecialRows<T>::list_borders() {
+  border_begin_.assign(1, 0);
+  border_.clear();
+  for (std::size_t j = 0; j + 1 < cells_->border_begin.size(); ++j)
+    for (const int parity : {0, 1}) {
+      for (int b = cells_->border_begin[j]; b < cells_->border_begin[j + 1]; ++b)
+        if (const PartBorder& border = cells_->border[std::size_t(b)];
+            (border.column & 1) == parity)
+          border_.push_back({border.column >> 1, border.part, border.neighbour});
+      border_begin_.push_back(int(border_.size()));
+    }
+}
+
+template <class T>
 void SpecialRows<T>::list_couplings() {
-  const SpecialCells<T>& cells = *cells_;
-  auto each = [&](auto&& visit) {
-    for (int n = 0; n < cells.size(); ++n)
-      for_corner_vertices(cells, n, [&](int v, int corner, int p) {
-        if (const int node = unknown_corner(n, corner); node >= 0) visit(v, p, std::size_t(node));
-      });
-  };
-  near_.push_back({});
-  each([&](int, int, std::size_t node) { ++near_[node + 1].coupling_begin; });
-  for (std::size_t n = 1; n < near_.size(); ++n)
-    near_[n].coupling_begin += near_[n - 1].coupling_begin;
-  coupling_.resize(std::size_t(near_.back().coupling_begin));
-  slot_.assign(cells.vertex.size(), -1);
-  std::vector<int> filled(near_.size(), 0);
-  each([&](int v, int p, std::size_t node) {
-    const int slot = near_[node].coupling_begin + filled[node]++;
-    slot_[std::size_t(v)] = slot;
-    coupling_[std::size_t(slot)].part = p;
-  });
+  std::vector<std::pair<int, int>> further;  // near node, part
+  for (int n = 0; n < cells_->size(); ++n)
+    for_corner_vertices(*cells_, n, [&](int corner, int p) {
+      const int node = unknown_corner(n, corner);
+      if (node < 0) return;
+      int& part = near_[std::size_t(node)].part[quadrant(corner)];
+      if (part < 0)
+        part = p;
+      else
+        further.push_back({node, p});
+    });
+  if (further.empty()) return;
+  std::ranges::sort(further);
+  further_begin_.assign(near_.size() + 1, 0);
+  for (const auto& [node, p] : further) {
+    ++further_begin_[std::size_t(node) + 1];
+    further_.push_back({.part = p});
+  }
+  std::partial_sum(further_begin_.begin(), further_begin_.end(), further_begin_.begin());
 }
 
 template <class T>
@@ -241,15 +259,15 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
   const SpecialCells<T>& cells = *cells_;
   const int i = cells.column[std::size_t(cell)];
   PartRow<T>& row = part_[std::size_t(part)];
-  row = {.compliance = cells.area[std::size_t(part)] * compliance_at(m, i, j)};
+  row = {.compliance = cells.area[std::size_t(part)] * compliance_at(m, i, j), .column = i};
   const T half = T(0.5) * clamped(m, m.listed[part], i, j);
   const int begin = cells.vertex_begin[std::size_t(part)],
             end = cells.vertex_begin[std::size_t(part) + 1];
   for (int v = begin; v < end; ++v) {
-    const int slot = slot_[std::size_t(v)];
-    if (slot < 0) continue;
     const int own = cells.vertex[std::size_t(v)].vertex;
-    NearRow<T>& node = near_[std::size_t(unknown_corner(cell, own))];
+    const int near = own < kFirstCrossing ? unknown_corner(cell, own) : -1;
+    if (near < 0) continue;
+    NearRow<T>& node = near_[std::size_t(near)];
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
     if (next.vertex < kFirstCrossing) node.g[stencil_place(own, next.vertex)] += half;
@@ -260,8 +278,14 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
     const T by = T(-0.5) * ((next.x - previous.x) + (to.x - from.x));
     row.bx[own] = bx;
     row.by[own] = by;
-    coupling_[std::size_t(slot)].bx = bx;
-    coupling_[std::size_t(slot)].by = by;
+    if (const int q = quadrant(own); node.part[q] == part) {
+      node.bx[q] = bx;
+      node.by[q] = by;
+    } else {
+      auto at = further_.begin() + further_begin_[std::size_t(near)];
+      while (at->part != part) ++at;
+      *at = {part, bx, by};
+    }
   }
 }
 
@@ -271,30 +295,46 @@ void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
   const SpecialCells<T>& cells = *cells_;
   jump_.assign(cells.neighbour.size(), T(0));
   has_jumps_ = m.pressure_jump != T(0);
-  if (m.pressure_jump == T(0)) return;
-  constexpr int kEast[] = {0, 1, 0, -1}, kNorth[] = {-1, 0, 1, 0};
-  auto set = [&](std::size_t p, int k, int i, int j) {
-    const PartNeighbour& other = cells.neighbour[std::size_t(k)];
-    const int begin = cells.vertex_begin[p], end = cells.vertex_begin[p + 1];
-    const PartVertex<T>& from = cells.vertex[std::size_t(other.vertex)];
-    const PartVertex<T>& to =
-        cells.vertex[std::size_t(other.vertex + 1 < end ? other.vertex + 1 : begin)];
-    const Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, from.vertex),
-                     v = at_vertex(cells, m.ux, m.uy, i, j, to.vertex);
-    const T ex = (to.x - from.x) + (v.x - u.x), ey = (to.y - from.y) + (v.y - u.y);
-    const int side = other.side;
-    const T mu = mu_at(m, i, j) + mu_at(m, i + kEast[side], j + kNorth[side]);
-    const T factor = other.part >= 0 ? T(kPartJump) : T(1);
-    jump_[std::size_t(k)] = factor * T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu;
-    part_[p].jumps += jump_[std::size_t(k)];
-  };
+  part_jumps_.assign(has_jumps_ ? part_.size() : 0, {});
+  if (!has_jumps_) return;
+  if (border_begin_.empty()) list_borders();
   for_special(cells, [&](int n, int i, int j) {
     for_parts(cells, n, [&](int p) {
+      std::ranges::fill(part_jumps_[std::size_t(p)].part, p);
       for (int k = cells.neighbour_begin[std::size_t(p)];
            k < cells.neighbour_begin[std::size_t(p) + 1]; ++k)
-        set(std::size_t(p), k, i, j);
+        set_jump(m, std::size_t(p), k, i, j);
     });
   });
+  for (BorderJump<T>& border : border_) border.jump = jump(border.neighbour);
+}
+
+template <class T>
+void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i, int j) {
+  const SpecialCells<T>& cells = *cells_;
+  constexpr int kEast[] = {0, 1, 0, -1}, kNorth[] = {-1, 0, 1, 0};
+  const PartNeighbour& other = cells.neighbour[std::size_t(k)];
+  const int begin = cells.vertex_begin[p], end = cells.vertex_begin[p + 1];
+  const PartVertex<T>& from = cells.vertex[std::size_t(other.vertex)];
+  const PartVertex<T>& to =
+      cells.vertex[std::size_t(other.vertex + 1 < end ? other.vertex + 1 : begin)];
+  const Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, from.vertex),
+                   v = at_vertex(cells, m.ux, m.uy, i, j, to.vertex);
+  const T ex = (to.x - from.x) + (v.x - u.x), ey = (to.y - from.y) + (v.y - u.y);
+  const int side = other.side;
+  const T mu = mu_at(m, i, j) + mu_at(m, i + kEast[side], j + kNorth[side]);
+  const T factor = other.part >= 0 ? T(kPartJump) : T(1);
+  const T jump = factor * T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu;
+  jump_[std::size_t(k)] = jump;
+  part_[p].jumps += jump;
+  PartJumps<T>& row = part_jumps_[p];
+  const bool first = std::ranges::none_of(
+      cells.neighbour.begin() + cells.neighbour_begin[p], cells.neighbour.begin() + k,
+      [side](const PartNeighbour& before) { return before.side == side; });
+  row.more |= !first;
+  if (!first) return;
+  row.jump[side] = jump;
+  row.part[side] = other.part;
 }
 
 template <class T>
@@ -302,14 +342,14 @@ void SpecialRows<T>::set_steps(const Membrane<T>& m) {
   // As in relax_volume: s stays positive where all has collapsed, or all corners are known.
   const T floor = T(1e-6) * m.spacing * m.spacing / (T(4) * m.mu.value);
   for (const CellVisit<T>& visit : visit_)
-    for_parts(*cells_, visit.cell, [&](int p) {
+    for (int p = visit.part_begin; p < visit.part_end; ++p) {
       PartRow<T>& row = part_[std::size_t(p)];
       T s = (row.compliance + row.jumps) + floor;
       for (int c = 0; c < 4; ++c)
         s += (row.bx[c] * row.bx[c] + row.by[c] * row.by[c]) * visit.inverse[c];
       if (soft()) s += curve_weight(*soft(), p);
       row.inverse = T(1) / s;
-    });
+    }
 }
 
 template <class T>
@@ -328,13 +368,15 @@ void SpecialRows<T>::linearise(const Membrane<T>& m) {
 
 template <class T>
 std::size_t SpecialRows<T>::bytes() const {
-  std::size_t indices = slot_.size() + corner_.size();
-  for (const auto* list : {&near_begin_, &known_, &known_begin_, &loose_, &loose_begin_,
-                           &near_half_, &near_half_begin_, &visit_begin_})
+  std::size_t indices = corner_.size();
+  for (const auto* list :
+       {&near_begin_, &known_, &known_begin_, &loose_, &loose_begin_, &near_half_,
+        &near_half_begin_, &visit_begin_, &border_begin_, &further_begin_})
     indices += list->size();
   return indices * sizeof(int) + near_.size() * sizeof(NearRow<T>) +
          visit_.size() * sizeof(CellVisit<T>) + part_.size() * sizeof(PartRow<T>) +
-         jump_.size() * sizeof(T) + coupling_.size() * sizeof(PartCoupling<T>) +
+         jump_.size() * sizeof(T) + part_jumps_.size() * sizeof(PartJumps<T>) +
+         border_.size() * sizeof(BorderJump<T>) + further_.size() * sizeof(PartCoupling<T>) +
          block_.size() * sizeof(BlockRow<T>) + fringe_.size() * sizeof(FringeCell) +
          tangent_.size() * sizeof(T) + soft_.bytes();
 }

@@ -87,6 +87,18 @@ std::vector<std::array<int, 2>> across_soft_curves(const grid::ConformingCells& 
   return pairs;
 }
 
+/// Σ value(k) over k = begin … end − 1, in eight sums that do not wait for one another.
+template <class F>
+double sum_of(int begin, int end, F&& value) {
+  constexpr int kSums = 8;
+  std::array<double, kSums> sums{};
+  int k = begin;
+  for (; k + kSums <= end; k += kSums)
+    for (int n = 0; n < kSums; ++n) sums[std::size_t(n)] += double(value(k + n));
+  for (int n = 0; k < end; ++k, ++n) sums[std::size_t(n)] += double(value(k));
+  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+}
+
 }  // namespace
 
 /// Runs of regular cells between special ones and walls.
@@ -187,7 +199,7 @@ void Regions::prepare(const kernels::Membrane<T>& m) {
     area_[region] += cell * (end - begin);
     if (!compliance) return;
     const T* row = compliance.half(j, parity);
-    for (int k = begin; k < end; ++k) weight_[region] += cell * double(row[k]);
+    weight_[region] += cell * sum_of(begin, end, [=](int k) { return row[k]; });
   });
   for (int j = 0; j + 1 < int(cells.row_begin.size()); ++j)
     for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n)
@@ -208,9 +220,7 @@ void Regions::add_sums(const kernels::Unknowns<T>& f) {
   std::ranges::fill(sum_, 0.0);
   for_halves([&](std::size_t region, int j, int parity, int begin, int end) {
     const T* row = f.p.half(j, parity);
-    double sum = 0.0;
-    for (int k = begin; k < end; ++k) sum += double(row[k]);
-    sum_[region] += sum;
+    sum_[region] += sum_of(begin, end, [=](int k) { return row[k]; });
   });
   for (std::size_t p = 0; p < part_region_.size(); ++p)
     sum_[std::size_t(part_region_[p])] += double(f.listed[p]);
@@ -250,9 +260,9 @@ void Regions::set_means(const kernels::Membrane<T>& m, const kernels::Unknowns<T
   for_halves([&](std::size_t region, int j, int parity, int begin, int end) {
     const T* p = d.p.half(j, parity);
     const T* c = compliance ? compliance.half(j, parity) : nullptr;
-    double sum = 0.0;
-    for (int k = begin; k < end; ++k) sum += c ? double(c[k]) * double(p[k]) : double(p[k]);
-    shift_[region] += cell * sum;
+    shift_[region] +=
+        cell * (c ? sum_of(begin, end, [=](int k) { return double(c[k]) * double(p[k]); })
+                  : sum_of(begin, end, [=](int k) { return p[k]; }));
   });
   for (std::size_t p = 0; p < part_region_.size(); ++p)
     shift_[std::size_t(part_region_[p])] += part_weight_[p] * double(d.listed[p]);

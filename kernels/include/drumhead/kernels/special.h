@@ -101,18 +101,18 @@ struct SpecialCells {
 /// the middle and the northern row, then south and north, at last the node itself.
 constexpr int kStencilPlaces = 9;
 
-/// Row of a near node that is no known one: its stencil, the pressures of its regular cells (sw,
-/// se, nw, ne; 0 for special ones) and of the parts it belongs to. In the order and the size of
-/// vectors, which a node's loop is made of.
+/// Row of a near node that is no known one: its stencil, and per quadrant sw, se, nw, ne the
+/// pressure of a regular cell or of the part that it belongs to. In the order and the size of
+/// vectors, which a node's loop is made of, and in floats two lines of cache.
 template <class T>
-struct NearRow {
-  int column = 0;
-  int coupling_begin = 0;    ///< into SpecialRows::coupling, up to the next row's
-  int regular = 15;          ///< bit q set: cell q of sw, se, nw, ne is regular
-  T inverse = T(0);          ///< 1/K_ii
+struct alignas(64) NearRow {
   T k[kStencilPlaces] = {};  ///< (H d)_x = k·d_x + g·d_y, (H d)_y = k·d_y − g·d_x
+  int column = 0;
+  int regular = 15;  ///< bit q set: the cell in quadrant q is regular
+  T inverse = T(0);  ///< 1/K_ii
   T g[kStencilPlaces - 1] = {};
   T bx[4] = {}, by[4] = {};
+  int part[4] = {-1, -1, -1, -1};  ///< −1: the cell is regular, or the node no corner of a part
 };
 /// The same of isotropic membranes: (H d)_x = xx·d_x + xy·d_y, (H d)_y = yx·d_x + yy·d_y.
 template <class T>
@@ -125,6 +125,8 @@ struct FringeCell {
   int column = 0, row = 0;
   int near[4] = {-1, -1, -1, -1};
 };
+/// A part to which a near node belongs beyond one a quadrant: those that a soft curve's node
+/// divides.
 template <class T>
 struct PartCoupling {
   int part = 0;
@@ -138,11 +140,27 @@ struct PartRow {
   T compliance = T(0);  ///< A/kappa
   T jumps = T(0);       ///< Σ jump_n
   T inverse = T(0);  ///< 1/s of Kaczmarz's method: s = Σ (bx² + by²)/K_ii + compliance + jumps
+  int column = 0;    ///< of its cell
+};
+/// Its first neighbours across the sides south, east, north, west.
+template <class T>
+struct PartJumps {
+  T jump[4] = {};     ///< 0: none
+  int part[4] = {};   ///< −1: a regular cell; where none is, the part itself
+  bool more = false;  ///< it has more than one across a side
+};
+/// A regular cell and a part that is its neighbour.
+template <class T>
+struct BorderJump {
+  int half = 0;  ///< of the regular cell's column, rounded down
+  int part = 0;
+  int neighbour = 0;  ///< the part's entry of SpecialCells::neighbour
+  T jump = T(0);
 };
 /// A special cell as sweeps meet it.
 template <class T>
 struct CellVisit {
-  int column = 0, cell = 0;
+  int column = 0, part_begin = 0, part_end = 0;
   T inverse[4] = {};  ///< 1/K_ii of its corners; 0: known or on the fixed boundary
 };
 
@@ -175,6 +193,12 @@ class SpecialRows {
               end = visit_begin_[std::size_t(2 * j + parity) + 1];
     return {visit_.data() + begin, std::size_t(end - begin)};
   }
+  /// Regular cells of cell row j in columns of one parity that have parts as neighbours, by column.
+  std::span<const BorderJump<T>> borders(int j, int parity) const {
+    const int begin = border_begin_[std::size_t(2 * j + parity)],
+              end = border_begin_[std::size_t(2 * j + parity) + 1];
+    return {border_.data() + begin, std::size_t(end - begin)};
+  }
   int near_count() const { return near_begin_.back(); }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
   const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
@@ -182,7 +206,17 @@ class SpecialRows {
   bool has_jumps() const { return has_jumps_; }
   /// Strength of the jump at entry k of SpecialCells::neighbour.
   T jump(int k) const { return jump_[std::size_t(k)]; }
-  const PartCoupling<T>& coupling(int k) const { return coupling_[std::size_t(k)]; }
+  /// Of a part, where there are jumps.
+  const PartJumps<T>& jumps(int p) const { return part_jumps_[std::size_t(p)]; }
+  /// Whether there is anything that NearRow::part leaves out; where all curves are hard there is
+  /// not.
+  bool has_further() const { return !further_.empty(); }
+  /// That of near node n.
+  std::span<const PartCoupling<T>> further(int n) const {
+    if (!has_further()) return {};
+    const int begin = further_begin_[std::size_t(n)], end = further_begin_[std::size_t(n) + 1];
+    return {further_.data() + begin, std::size_t(end - begin)};
+  }
   /// Curve nodes of soft curves; null: none.
   const SoftRows<T>* soft() const { return soft_.size() > 0 ? &soft_ : nullptr; }
   /// Near node at corner c of special cell n; −1: known or on the fixed boundary.
@@ -203,21 +237,24 @@ class SpecialRows {
   void linearise_isotropic(const Membrane<T>& membrane);
   void list_couplings();
   void list_visits();
+  void list_borders();
   void add_stiffness(const Membrane<T>& membrane);
   void linearise_regular(const Membrane<T>& membrane);
   void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
   void set_jumps(const Membrane<T>& membrane);
+  void set_jump(const Membrane<T>& membrane, std::size_t part, int neighbour, int i, int j);
   void set_steps(const Membrane<T>& membrane);
 
   const SpecialCells<T>* cells_ = nullptr;
   std::vector<int> near_begin_, corner_, known_, known_begin_, loose_, loose_begin_, near_half_,
-      near_half_begin_, visit_begin_;
-  std::vector<int> slot_;         // of every part vertex: index into coupling_, −1: none
-  std::vector<NearRow<T>> near_;  // one more than there are, which ends the couplings of the last
+      near_half_begin_, visit_begin_, border_begin_, further_begin_;
+  std::vector<NearRow<T>> near_;
   std::vector<CellVisit<T>> visit_;
   std::vector<PartRow<T>> part_;
   std::vector<T> jump_;
-  std::vector<PartCoupling<T>> coupling_;
+  std::vector<PartJumps<T>> part_jumps_;
+  std::vector<BorderJump<T>> border_;
+  std::vector<PartCoupling<T>> further_;
   std::vector<BlockRow<T>> block_;
   std::vector<FringeCell> fringe_;
   std::vector<T> tangent_;
