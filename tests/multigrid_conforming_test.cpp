@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "support/conforming_scene.h"
+#include "support/random_curves.h"
 
 namespace drumhead {
 namespace {
@@ -247,6 +248,31 @@ TEST_P(ConformingKernels, TheJumpTermSeesPartsAndRegularCells) {
   difference.block(first, first, expected.rows(), expected.cols()) -= expected;
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GT(expected.bottomRows(scene.cells().parts()).cwiseAbs().maxCoeff(), 0.01);
+}
+
+// Among random curves there are parts with several neighbours across one side.
+TEST(ConformingKernels, AConstantPressureHasNoJump) {
+  int several = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    grid::RandomCurves random(seed, kNx, kNy);
+    Scene scene(std::vector<grid::CurvePair>{random.any(), random.any(), random.any()});
+    const kernels::Unknowns<double> d = scene.level.d.view(), out = scene.level.f.view();
+    for (int j = 0; j < kNy; ++j)
+      for (int i = 0; i < kNx; ++i) d.p.at(i, j) = scene.special(i, j) ? 0.0 : 1.0;
+    std::fill_n(d.listed, d.listed_count, 1.0);
+    std::vector<double> product[2];
+    for (const double jump : {0.0, 0.4}) {
+      scene.level.pressure_jump = jump;
+      kernels::SpecialRows<double>& rows = scene.level.conforming->rows;
+      rows.linearise(scene.level.membrane());
+      kernels::apply_hessian<double>(scene.level.membrane(), d, out);
+      product[jump > 0.0].assign(out.listed, out.listed + out.listed_count);
+      for (int p = 0; p < out.listed_count && rows.has_jumps(); ++p) several += rows.jumps(p).more;
+    }
+    for (std::size_t p = 0; p < product[0].size(); ++p)
+      EXPECT_NEAR(product[0][p], product[1][p], 1e-12) << seed << " part " << p;
+  }
+  EXPECT_GT(several, 0);
 }
 
 }  // namespace

@@ -55,10 +55,11 @@ struct Scene {
   multigrid::Hierarchy<double> hierarchy;
   Level<double>& level;
 
-  explicit Scene(Weights weights = {})
+  explicit Scene(Weights weights = {}) : Scene(curves(weights)) {}
+  explicit Scene(const std::vector<grid::CurvePair>& pairs)
       : hierarchy(lattice, {.mu = 1.0, .kappa = kKappa}, grid::cut({}, lattice, 1e6), {}, meter),
         level(hierarchy[0]) {
-    hierarchy.conform(curves(weights), lattice, meter);
+    hierarchy.conform(pairs, lattice, meter);
     std::mt19937 bits(7);
     std::uniform_real_distribution<double> number(-0.15, 0.15);
     for_interior([&](int i, int j) {
