@@ -21,6 +21,9 @@ constexpr double kRowMet = 1e-3;
 // where 300 are had now, S2 turned by 135° stalls at kappa infinity.
 constexpr std::size_t kDirectionNodes = 2500000;
 constexpr int kLeastDirections = 20, kMostDirections = 300, kCycles = 200;
+// And where a strip is solved: what 60 cycles do not solve an easier Hessian (a smaller theta)
+// does.
+constexpr int kStripDirections = 8, kStripCycles = 60;
 // The exact Hessian: steps, residual of its systems, and directions.
 constexpr int kUnclampedSteps = 12, kUnclampedDirections = 400;
 constexpr double kUnclampedReduction = 1e-3;
@@ -31,11 +34,13 @@ constexpr std::size_t kLastSteps = 5;
 
 /// `most`: GCR's directions.
 LinearOptions linear_options(Solver solver, double reduction, std::size_t nodes, int most) {
-  const int directions = std::clamp(int(kDirectionNodes / nodes), kLeastDirections, most);
+  const bool strip = nodes >= kStripNodes;
+  const int directions =
+      strip ? kStripDirections : std::clamp(int(kDirectionNodes / nodes), kLeastDirections, most);
   return {.solver = solver,
           .content = reduction,
           .reduction = reduction,
-          .most_cycles = std::max(kCycles, directions),
+          .most_cycles = strip ? kStripCycles : std::max(kCycles, directions),
           .directions = directions};
 }
 
@@ -99,8 +104,8 @@ template <class T>
 NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
                           const NewtonReport& with_jump, const LevelProgress& progress,
                           double cell_px, std::vector<std::string>& notes) {
-  hierarchy.drop_jump(kTraceOfJump);
   const std::size_t nodes = hierarchy[0].nodes();
+  hierarchy.drop_jump(jump_kept(nodes, hierarchy.traits().jump_inside));
   NewtonOptions options;
   options.most_steps = kExactSteps;
   options.tolerance_rms = options.tolerance_max = kExactMove;

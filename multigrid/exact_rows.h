@@ -3,6 +3,7 @@
 // What exact curve rows (SolverOptions::exact) ask of Newton's method besides: a kappa that grows
 // step by step on the level where the iteration starts, and on the finest level last steps without
 // the q-jump, until no node moves.
+#include "curve_strip.h"
 #include "nested.h"
 
 namespace drumhead::multigrid {
@@ -10,6 +11,13 @@ namespace drumhead::multigrid {
 /// A trace of the q-jump that stays in the preconditioner: S2 kappa 10, 32² takes 412, 270, 191,
 /// 163, 231 cycles with .005, 5e-4, 5e-5, 1e-5, 0; kappa 100 1033, 669, 508, 491, 1147.
 inline constexpr double kTraceOfJump = 5e-5;
+
+/// Of the q-jump `inside`, what stays in the preconditioner of exact rows on this many nodes:
+/// beside a strip (curve_strip.h) all of it. S2, kappa 1e4, 128², to 1e-3: 15 cycles with .005, 23
+/// with .001, 27 with 5e-4, with 5e-5 it stalls.
+inline double jump_kept(std::size_t nodes, double inside) {
+  return nodes < kStripNodes ? kTraceOfJump : inside;
+}
 
 /// On the start level, with a harmonic state: Newton for ever larger kappa, all but the last. At
 /// once, stiff scenes end in worse minima, or nowhere (S2 turned by 135°, kappa 1e4). Returns the

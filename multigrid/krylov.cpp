@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <drumhead/kernels/cuts.h>
 #include <drumhead/kernels/reduce.h>
 
+#include "curve_strip.h"
 #include "kaczmarz_cycles.h"
 #include "minres.h"
 
@@ -20,7 +22,10 @@ constexpr int kMostPlainCycles = 3;
 template <class T>
 class Gcr {
  public:
-  Gcr(const NewtonSystem<T>& system, Cycle<T>& cycle) : system_(system), cycle_(cycle) {}
+  /// `strip`: whether each cycle stands between two solutions of the strip beside the curves.
+  Gcr(const NewtonSystem<T>& system, Cycle<T>& cycle, bool strip) : system_(system), cycle_(cycle) {
+    if (strip) strip_.emplace(system);
+  }
 
   /// Goes on from the level's d, dq, whose right-hand side was f − Wᵀ dq; `start`: norm of that
   /// side.
@@ -31,29 +36,53 @@ class Gcr {
     Vector<T> z, image;
     double norm2 = 0.0;
   };
+  void run_cycle(const Vector<T>& r, CycleKind kind);
+  void set_direction(const Vector<T>& r, CycleKind kind, Direction& next);
   bool step(Vector<T>& r, Vector<T>& x, const LinearOptions& options, std::size_t& stored);
 
   const NewtonSystem<T>& system_;
   Cycle<T>& cycle_;
+  std::optional<CurveStrip<T>> strip_;
   std::vector<Direction> directions_;
 };
+
+/// One cycle on r, from zero; its correction is the level's.
+template <class T>
+void Gcr<T>::run_cycle(const Vector<T>& r, CycleKind kind) {
+  kernels::combine<T>(T(1), r.fields.view(), T(0), cycle_.system(system_.top()).f);
+  system_.level().fq = r.q;
+  cycle_.run(kind, true);
+}
+
+template <class T>
+void Gcr<T>::set_direction(const Vector<T>& r, CycleKind kind, Direction& next) {
+  const double kept = strip_ ? 1.0 : 0.0;
+  if (strip_) {
+    next.z.fields.clear();
+    std::ranges::fill(next.z.q, T(0));
+    strip_->add_solution(r, next.z);
+    system_.residual(r, next.z, next.image);
+  }
+  run_cycle(strip_ ? next.image : r, kind);
+  kernels::combine<T>(T(1), system_.correction(), T(kept), next.z.fields.view());
+  for (std::size_t k = 0; k < next.z.q.size(); ++k)
+    next.z.q[k] = T(kept) * next.z.q[k] + system_.level().dq[k];
+  if (strip_) {
+    system_.residual(r, next.z, next.image);
+    strip_->add_solution(next.image, next.z);
+  }
+  system_.apply(next.z, next.image);
+}
 
 /// One cycle on r, made orthogonal to the stored images; false if it yields no direction.
 template <class T>
 bool Gcr<T>::step(Vector<T>& r, Vector<T>& x, const LinearOptions& options, std::size_t& stored) {
-  Level<T>& level = system_.level();
-  kernels::combine<T>(T(1), r.fields.view(), T(0), cycle_.system(system_.top()).f);
-  level.fq = r.q;
-  cycle_.run(options.kind, true);
-
   if (directions_.size() < std::size_t(options.directions) && stored >= directions_.size())
     directions_.push_back({system_.make_vector(), system_.make_vector(), 0.0});
   // The slot of `next` still holds the oldest pair; it is dropped from the orthogonalisation.
   Direction& next = directions_[stored % directions_.size()];
   const std::size_t kept = std::min(stored, directions_.size());
-  kernels::combine<T>(T(1), system_.correction(), T(0), next.z.fields.view());
-  next.z.q = level.dq;
-  system_.apply(next.z, next.image);
+  set_direction(r, options.kind, next);
   for (std::size_t n = 1; n <= kept; ++n) {
     Direction& old = directions_[(stored - n) % directions_.size()];
     if (&old == &next) continue;
@@ -162,8 +191,11 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
     std::ranges::fill(level.dq, T(0));
     report.residual = 1.0;
   }
-  if (hierarchy.traits().jump == 0.0 && level.cuts.size() > 0) cycle.relax_patches(meter);
-  return Gcr<T>({hierarchy, top, pressure, meter}, cycle).solve(start, report, options);
+  const bool exact = hierarchy.traits().jump == 0.0 && level.cuts.size() > 0;
+  const bool strip = exact && level.nodes() >= kStripNodes;
+  if (exact && !strip) cycle.relax_patches(meter);
+  const NewtonSystem<T> system(hierarchy, top, pressure, meter);
+  return Gcr<T>(system, cycle, strip).solve(start, report, options);
 }
 
 template LinearReport solve_linear(Hierarchy<float>&, int, bool, double, const LinearOptions&,

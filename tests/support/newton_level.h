@@ -51,7 +51,9 @@ class NewtonLevel {
   }
 
   /// No jump in the equations, in the preconditioner that of exact rows.
-  void drop_jump() { hierarchy_.drop_jump(multigrid::kTraceOfJump); }
+  void drop_jump() {
+    hierarchy_.drop_jump(multigrid::jump_kept(level().nodes(), hierarchy_.traits().jump_inside));
+  }
 
   multigrid::Level<T>& level() { return hierarchy_[0]; }
   bool pressure() { return bool(level().pressure); }
