@@ -67,12 +67,6 @@ constexpr double kGentleContent = 0.8, kCoarseShare = 0.3, kGentleStart = 0.02;
 // no coarser start could not do with. S2 and S4 at kappa 100 with kContent and a tenth: 88 and 57
 // ms at 200², 405 and 325 at 400²; with these 91, 55, 260, 146.
 constexpr double kStiffReduction = 0.5;
-// From this kappa/mu on their cycles relax all parts at once, too (part_patch.h), but on the start
-// level, where S5 then takes 60 steps and more (32²). Steps (cycles) and ms without and with it,
-// kappa 1e4: S2 100² 13 (59) 155, 6 (13) 47; 400² 14 (38) 905, 5 (10) 271; S4 200² 19 (93) 389, 7
-// (14) 75. At kappa 100 S2 takes 9 % less, S4 7 % more. After the sweeps instead of before them S5
-// ends with 3 % more energy, and with a second one before the restriction S2 turned by 180° stalls.
-constexpr double kStiffParts = 300.0;
 constexpr std::size_t kSmallNodes = 20000;
 // Up to these kappa/mu, on the start level and on the others, V-cycles take the place of F-cycles
 // on lattices of few nodes, where a visit to a coarse level costs more than its nodes. S1 kappa 1,
