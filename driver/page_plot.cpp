@@ -45,7 +45,7 @@ class Drawing {
   std::string svg() {
     text_ = format("<svg viewBox=\"0 0 %g %g\" role=\"img\">", kWidth, kHeight);
     add("<title>" + html::escaped(plot_.title) + "</title>");
-    add(format("<text x=\"4\" y=\"14\">") + html::escaped(plot_.title) + "</text>");
+    add("<text x=\"4\" y=\"14\">" + html::escaped(plot_.title) + "</text>");
     add_bands();
     add_decades();
     if (shown(plot_.bound)) {

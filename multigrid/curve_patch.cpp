@@ -108,7 +108,7 @@ class Assembly {
   }
   /// B d − A/kappa dP − the jump between pressures (relax_body.h, pressure_jump.h).
   void add_volume_row(int number) {
-    const auto [i, j] = cells.places[std::size_t(number)];
+    const int i = cells.places[std::size_t(number)].i, j = cells.places[std::size_t(number)].j;
     const int row = 2 * level_.cuts.count + number;  // and its own column of M
     const double h = double(m_.spacing);
     auto x = [&](int a, int b) { return h * a + double(m_.ux.at(i + a, j + b)); };

@@ -11,6 +11,10 @@ namespace drumhead::multigrid {
 /// follow. Expects `report.curves`.
 void note_gaps(const WarpProblem& problem, SolveReport& report);
 
+/// Where areas hold most of the energy: which closed hard curve's target changes its area most, so
+/// that kappa can keep no area within. Expects `report.energy`.
+void note_changed_area(const WarpProblem& problem, SolveReport& report);
+
 /// What folds mean where a model rules them out (Eq. 8 as an inequality) or invites them. Expects
 /// `report.folds`.
 void note_folds(const grid::Material& material, SolveReport& report);

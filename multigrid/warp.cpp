@@ -289,6 +289,7 @@ Solution solve(const WarpProblem& problem, const SolverOptions& options) {
   solution.report.curves = curve_gaps(solution, problem.curves);
   note_gaps(problem, solution.report);
   solution.report.folds = find_folds(solution);
+  note_changed_area(problem, solution.report);
   note_folds(problem.material, solution.report);
   const kernels::Model model = problem.material.model;
   solution.report.model = kernels::isotropic(model)   ? model

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Lengths and places as notes name them.
+// Lengths, places and shares as notes name them.
 #include <cstdio>
 #include <string>
 
@@ -12,6 +12,13 @@ namespace drumhead::multigrid {
 inline std::string in_words(double px) {
   char text[64];
   std::snprintf(text, sizeof text, "%.2f px", px);
+  return text;
+}
+
+/// "12 %" of a share .12
+inline std::string percent(double share) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <drumhead/multigrid/warp.h>
 #include <gtest/gtest.h>
 
+#include "support/cut_checks.h"
 #include "support/refusal.h"
 #include "support/scene_problem.h"
 
@@ -192,6 +193,27 @@ TEST(CancelledPath, EndsAtOnceWithExactRows) {
   options.progress = [&](const Progress&) { return ++calls < 3; };
   EXPECT_EQ(solve(problem, options).report.status, Status::cancelled);
   EXPECT_EQ(calls, 3);
+}
+
+/// A disc that grows by a fifth, 44 % of its area: kappa 1e4 has something to say, 1 has not, nor
+/// if the curve is soft.
+TEST(WarpNotes, NameTheClosedCurveWhoseAreaKappaResists) {
+  WarpProblem problem{.lattice = grid::unit_lattice(48, 48), .material = {}, .curves = {}};
+  problem.curves = {
+      {.name = "still", .source = grid::round({10, 10}, 4.0), .target = grid::round({10, 10}, 4.0)},
+      {.name = "disc",
+       .source = grid::round({28, 28}, 10.0),
+       .target = grid::round({28, 28}, 12.0)}};
+  auto notes = [&](double kappa) {
+    problem.material.kappa = kappa;
+    return solve(problem).report.notes;
+  };
+  const std::string wanted = "curve 'disc' encloses 44 % more area at its target, which kappa ";
+  const auto about_areas = [&](const std::string& note) { return note.starts_with(wanted); };
+  EXPECT_TRUE(std::ranges::none_of(notes(1.0), about_areas));
+  EXPECT_TRUE(std::ranges::any_of(notes(1e4), about_areas));
+  problem.curves[1].weight = 1e3;
+  EXPECT_TRUE(std::ranges::none_of(notes(1e4), about_areas));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 /// [H Bᵀ; B −C] (dx, dP) = (f, g) by condensation of the pressures and refinement.
 class Saddle {
  public:
-  Saddle(const ConformingMembrane& m, const Sparse& H, const Sparse& B) : m_(m), H_(H), B_(B) {
+  Saddle(const ConformingMembrane& m, const Sparse& H, const Sparse& B) : H_(H), B_(B) {
     const Eigen::Index rows = Eigen::Index(m.rows.size());
     compliance_.resize(rows);
     condensed_.resize(rows);
@@ -56,7 +56,6 @@ class Saddle {
   }
 
  private:
-  const ConformingMembrane& m_;
   const Sparse &H_, &B_;
   VectorXd compliance_, condensed_;
   Eigen::SimplicialLDLT<Sparse> factor_;
