@@ -160,11 +160,9 @@ TEST_F(DriverMasks, SceneKeysAreTheFlags) {
            {"mu_scale = \"sqrt\"", "mu_scale = 'sqrt': must be one of: linear, log"},
            {"kappa_mask = \"\"", "kappa_mask = '': must be the path of a file"}}) {
     Options wrong;
-    EXPECT_NE(message_of([&] {
-                read_scene(scratch.write("w.toml", text), wrong);
-              }).find("w.toml:1: " + error),
-              std::string::npos)
-        << error;
+    const auto file = scratch.write("w.toml", text);
+    const std::string message = message_of([&] { read_scene(file, wrong); });
+    EXPECT_NE(message.find("w.toml:1: " + error), std::string::npos) << error;
   }
 }
 
