@@ -88,9 +88,9 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool v
     auto add = [&](Sweep sweep) {
       for (int parity : rows) list.add({sweep, parity, reverse});
     };
-    if (volume && !reverse) add(Sweep::volume);
+    if (volume && !reverse && stages.volume != VolumeSweeps::reverse) add(Sweep::volume);
     if (cuts) add(Sweep::cuts);
-    if (volume && reverse) add(Sweep::volume);
+    if (volume && reverse && stages.volume != VolumeSweeps::forwards) add(Sweep::volume);
   }
   if (near && volume && stages.curves_again) {
     // Once more along the curves: V-cycles that take a residual down by 1000 at 128², kappa 1e4: S1

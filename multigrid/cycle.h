@@ -71,6 +71,7 @@ class Cycle {
   std::vector<PartPatch<T>> part_patches_;  ///< likewise
   std::vector<T> residual_;
   bool relaxes_band_ = false, curves_again_ = true;
+  kernels::VolumeSweeps volume_down_ = kernels::VolumeSweeps::twice, volume_up_ = volume_down_;
 };
 
 }  // namespace drumhead::multigrid

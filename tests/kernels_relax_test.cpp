@@ -19,6 +19,7 @@ namespace {
 using Eigen::VectorXd;
 using fields::LevelSpec;
 using fields::RandomLevel;
+using kernels::VolumeSweeps;
 using oracle::KernelOracle;
 
 // A volume row's step is shortened by a share of its fixed floor (see relax_body.h).
@@ -86,17 +87,19 @@ class Reference {
     return force;
   }
 
-  void relax(const Band* band = nullptr) {
+  void relax(const Band* band = nullptr, VolumeSweeps volume_sweeps = VolumeSweeps::twice) {
     band_ = band;
     for (const int colour : {0, 1}) {
       const auto rows =
           oracle_.nodes([&](int i, int j) { return (i + j) % 2 == colour && relaxed(i, j); });
       oracle::gauss_seidel(oracle_.matrix, right, rows, z);
     }
-    for (const int rows : {0, 1}) volume(rows, false);
+    if (volume_sweeps != VolumeSweeps::reverse)
+      for (const int rows : {0, 1}) volume(rows, false);
     for (const int rows : {0, 1}) curves(rows, false);
     for (const int rows : {1, 0}) curves(rows, true);
-    for (const int rows : {1, 0}) volume(rows, true);
+    if (volume_sweeps != VolumeSweeps::forwards)
+      for (const int rows : {1, 0}) volume(rows, true);
   }
 
   const KernelOracle& oracle() const { return oracle_; }
@@ -147,23 +150,24 @@ class KernelsRelax : public testing::Test {};
 TYPED_TEST_SUITE(KernelsRelax, fields::Numbers, fields::NumberName);
 
 template <class T>
-void relax(RandomLevel<T>& level) {
+void relax(RandomLevel<T>& level, VolumeSweeps volume = VolumeSweeps::twice) {
   kernels::RowScratch<T> scratch(level.spec.nx + 1, 1);
-  kernels::relax<T>(level.system(), {}, nullptr, nullptr, scratch);
+  kernels::relax<T>(level.system(), {.volume = volume}, nullptr, nullptr, scratch);
 }
 
 /// Relaxes lattices of `base` by kernel and by matrix and compares unknowns and carried forces.
 template <class T, class Wanted>
-void expect_oracle_relaxation(const LevelSpec& base, Wanted&& wanted) {
+void expect_oracle_relaxation(const LevelSpec& base, Wanted&& wanted,
+                              VolumeSweeps volume = VolumeSweeps::twice) {
   fields::for_small_lattices(base, [&](const LevelSpec& spec) {
     if (!wanted(spec)) return;
     const RandomLevel<T> start(spec);
     Reference reference(start);
     const KernelOracle& oracle = reference.oracle();
-    reference.relax();
+    reference.relax(nullptr, volume);
     fields::on_every_isa([&] {
       RandomLevel<T> level(spec);
-      relax(level);
+      relax(level, volume);
       const VectorXd found = oracle.template packed<T>(level.d.view(), level.dq);
       EXPECT_LT(oracle::relative_error(found, reference.z), kTolerance<T>);
       const VectorXd carried = oracle.template packed<T>(level.f.view(), level.fq);
@@ -199,6 +203,13 @@ TYPED_TEST(KernelsRelax, SoftCurveRowsWithJumpAreWeightedKaczmarzOfTheAssembledM
 TYPED_TEST(KernelsRelax, AllRowsTogetherEqualTheAssembledRelaxation) {
   expect_oracle_relaxation<TypeParam>({.cuts = 30, .stiffness = 3.0, .jump = 0.0625},
                                       [](const LevelSpec& spec) { return spec.pressure; });
+}
+
+TYPED_TEST(KernelsRelax, VolumeRowsSweptOnceAreSweptBeforeOrAfterTheCurveRows) {
+  for (const VolumeSweeps volume : {VolumeSweeps::forwards, VolumeSweeps::reverse})
+    expect_oracle_relaxation<TypeParam>(
+        {.cuts = 30, .stiffness = 3.0, .jump = 0.0625},
+        [](const LevelSpec& spec) { return spec.pressure; }, volume);
 }
 
 TYPED_TEST(KernelsRelax, TheBandBesideCurvesEqualsItsPartOfTheAssembledRelaxation) {

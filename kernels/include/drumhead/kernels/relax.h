@@ -77,9 +77,17 @@ enum class Sweeps {
   nodes_reversed  ///< nodes black, nodes red: the adjoint of `nodes`
 };
 
+/// Sweeps of the volume rows.
+enum class VolumeSweeps {
+  twice,     ///< before the curve rows and, in reverse, after them
+  forwards,  ///< before the curve rows alone
+  reverse    ///< after the curve rows alone, in reverse
+};
+
 struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
   Sweeps sweeps = Sweeps::all;
+  VolumeSweeps volume = VolumeSweeps::twice;
   /// With Sweeps::all, near nodes and parts of special cells are relaxed once more at the end.
   bool curves_again = true;
 };
