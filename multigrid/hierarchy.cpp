@@ -30,9 +30,22 @@ constexpr double kCornerStiffness = 1e4;
 // Every part has a pressure of its own.
 constexpr grid::ConformOptions kConform{.least_area = 0.0};
 
+// Fields that take so much together lie in one piece. Smaller ones stay apart, so that a tool that
+// looks for accesses beyond an end finds them.
+constexpr std::size_t kOnePiece = std::size_t(1) << 21;
+
 bool coarsest(int nx, int ny, bool large) {
   const int most = large ? kLargeBottomCells : kBottomCells;
   return std::max(nx, ny) <= most || std::min(nx, ny) <= 3;
+}
+
+/// Of the fields that every level has: lattices halve, so a third more than the finest's.
+template <class T>
+std::size_t bytes_of_levels(int nx, int ny, const SceneTraits& traits) {
+  std::size_t bytes = 0;
+  for (; std::min(nx, ny) > 1; nx = grid::coarse_cells(nx), ny = grid::coarse_cells(ny))
+    bytes += Level<T>::bytes(nx, ny, traits);
+  return bytes;
 }
 
 /// Geometric means of the cells that a coarse cell covers, those at an odd edge counted twice. The
@@ -60,6 +73,8 @@ Hierarchy<T>::Hierarchy(const grid::Lattice& lattice, const grid::Material& mate
                         grid::MemoryMeter& meter)
     : traits_(traits), scratch_(lattice.nx + 1, kernels::thread_limit()) {
   int nx = lattice.nx, ny = lattice.ny;
+  if (const std::size_t bytes = bytes_of_levels<T>(nx, ny, traits); bytes >= kOnePiece)
+    meter.reserve(bytes);
   grid::CutCells rows = cuts;
   for (T spacing = T(1);; spacing *= T(2)) {
     Level<T>& level = levels_.emplace_back(nx, ny, spacing, traits, meter);

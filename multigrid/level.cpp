@@ -112,6 +112,14 @@ Level<T>::Level(int nx_, int ny_, T spacing_, const SceneTraits& traits, grid::M
 }
 
 template <class T>
+std::size_t Level<T>::bytes(int nx, int ny, const SceneTraits& traits) {
+  const std::size_t of_nodes = kernels::isotropic(traits.model) ? 11 : 6;
+  const std::size_t of_cells = traits.pressure ? 3 : 0;
+  return of_nodes * grid::Field<T>::bytes(nx + 1, ny + 1) +
+         of_cells * grid::Field<T>::bytes(nx, ny);
+}
+
+template <class T>
 kernels::Membrane<T> Level<T>::membrane() const {
   kernels::Membrane<T> m = harmonic();
   m.pressure = pressure.view();

@@ -89,6 +89,8 @@ struct Level {
   Solid<T> solid;  ///< isotropic membranes only
 
   Level(int nx, int ny, T spacing, const SceneTraits& traits, grid::MemoryMeter& meter);
+  /// Of the fields that it then has.
+  static std::size_t bytes(int nx, int ny, const SceneTraits& traits);
 
   kernels::Membrane<T> membrane() const;
   /// Whether the membrane is more than the harmonic one.

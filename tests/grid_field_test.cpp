@@ -112,6 +112,34 @@ TYPED_TEST(GridField, MovingOntoAnotherReleasesItsMemory) {
   EXPECT_EQ(meter.current(), 0u);
 }
 
+TYPED_TEST(GridField, ReservedOnesFollowOneAnotherWhileTheyFit) {
+  MemoryMeter meter;
+  const std::size_t bytes = Field<TypeParam>::bytes(9, 4);
+  meter.reserve(2 * bytes + 64);
+  const Field<TypeParam> first(9, 4, meter), second(9, 4, meter), own(9, 4, meter);
+  EXPECT_EQ(first.bytes(), bytes);
+  EXPECT_EQ(second.view().data, first.view().data + bytes / sizeof(TypeParam));
+  EXPECT_NE(own.view().data, second.view().data + bytes / sizeof(TypeParam));
+  EXPECT_EQ(meter.current(), 3 * bytes);
+}
+
+TYPED_TEST(GridField, LargeOnesBeginAtZeroEverywhereToo) {
+  MemoryMeter meter;
+  meter.reserve(3 * Field<TypeParam>::bytes(801, 700));  // 6.3 MiB and more: from the system
+  for (int n = 0; n < 4; ++n) {                          // the last one apart
+    Field<TypeParam> field(801, 700, meter);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(field.view().data) % 64, 0u);
+    std::size_t wrong = 0;
+    for (int j = 0; j < 700; ++j)
+      for (int i = 0; i < 801; ++i) {
+        wrong += field.view().at(i, j) != TypeParam(0);
+        field.view().at(i, j) = TypeParam(1);
+      }
+    EXPECT_EQ(wrong, 0u) << "field " << n;
+  }
+  EXPECT_EQ(meter.current(), 0u);
+}
+
 TYPED_TEST(GridField, UnknownsHaveNodesAndCellsOfTheirLattice) {
   MemoryMeter meter;
   UnknownFields<TypeParam> fields(7, 4, true, meter);
