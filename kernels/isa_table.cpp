@@ -2,6 +2,7 @@
 // Compiled once per instruction set, with DRUMHEAD_ISA_NAMESPACE and DRUMHEAD_ISA_LEVEL set by the
 // build: 0 scalar (auto-vectoriser off), 1 SSE2, 2 AVX2, 3 AVX-512.
 #include "energy_body.h"
+#include "folds_body.h"
 #include "kaczmarz_body.h"
 #include "kernel_table.h"
 #include "reduce_body.h"
@@ -39,8 +40,10 @@ constexpr KernelTable<T> make_table() {
       .mean_cells = gather_cells_row<true, T>,
       .interpolate_cells = interpolate_cells_row<T>,
       .dot = dot_row<T>,
-      .largest = largest_row<T>,
+      .squares_over = squares_over_row<T>,
       .combine = combine_row<T>,
+      .move = move_row<T>,
+      .folds = folds_row,
   };
 }
 

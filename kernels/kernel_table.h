@@ -3,7 +3,9 @@
 // The row kernels of one instruction set. isa_table.cpp fills one table per instruction set and
 // number type; the public functions call through the table that was chosen for this processor.
 #include <drumhead/kernels/elastic.h>
+#include <drumhead/kernels/folds.h>
 #include <drumhead/kernels/kaczmarz.h>
+#include <drumhead/kernels/reduce.h>
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -54,8 +56,12 @@ struct KernelTable {
   void (*interpolate_cells)(const Plane<const T>& coarse, const Plane<T>& fine, int j);
 
   double (*dot)(const Plane<const T>& a, const Plane<const T>& b, int j);
-  double (*largest)(const Plane<const T>& a, int j);
+  double (*squares_over)(const Plane<const T>& a, const Plane<const T>& b, int j);
   void (*combine)(T a, const Plane<const T>& x, T b, const Plane<T>& y, int j);
+  void (*move)(T a, const Plane<const T>& x, const Plane<T>& y, Moved&, int j);
+
+  void (*folds)(const double* u, const double* v, int cells, double scale, const Columns& left_out,
+                RowFolds&);
 };
 
 /// The table of the instruction set in use.

@@ -12,23 +12,33 @@ namespace {
 
 /// One value a row, of the calling thread, kept from call to call: solvers reduce without
 /// allocating.
-double* row_buffer(int rows) {
-  thread_local std::vector<double> values;
+template <class V = double>
+V* row_buffer(int rows) {
+  thread_local std::vector<V> values;
   if (values.size() < std::size_t(rows)) values.resize(std::size_t(rows));
   return values.data();
+}
+
+template <class T, class F>
+double sum_of_rows(const Plane<const T>& plane, F&& of_row) {
+  if (!plane) return 0.0;
+  double* const sums = row_buffer(plane.rows);
+  for_rows(0, plane.rows, plane.columns, [&](int j) { sums[j] = of_row(j); });
+  double sum = 0.0;
+  for (int j = 0; j < plane.rows; ++j) sum += sums[j];
+  return sum;
 }
 
 }  // namespace
 
 template <class T>
 double dot(const Plane<const T>& a, const Plane<const T>& b) {
-  if (!a) return 0.0;
-  const KernelTable<T>& kernels = table<T>();
-  double* const of_row = row_buffer(a.rows);
-  for_rows(0, a.rows, a.columns, [&](int j) { of_row[j] = kernels.dot(a, b, j); });
-  double sum = 0.0;
-  for (int j = 0; j < a.rows; ++j) sum += of_row[j];
-  return sum;
+  return sum_of_rows(a, [&](int j) { return table<T>().dot(a, b, j); });
+}
+
+template <class T>
+double squares_over(const Plane<const T>& a, const Plane<const T>& b) {
+  return sum_of_rows(a, [&](int j) { return table<T>().squares_over(a, b, j); });
 }
 
 template <class T>
@@ -37,21 +47,26 @@ double dot(const Unknowns<const T>& a, const Unknowns<const T>& b) {
 }
 
 template <class T>
-double largest(const Plane<const T>& a) {
-  const KernelTable<T>& kernels = table<T>();
-  double* const of_row = row_buffer(a.rows);
-  for_rows(0, a.rows, a.columns, [&](int j) { of_row[j] = kernels.largest(a, j); });
-  double most = 0.0;
-  for (int j = 0; j < a.rows; ++j)
-    if (of_row[j] > most || of_row[j] != of_row[j]) most = of_row[j];
-  return most;
-}
-
-template <class T>
 void combine(T a, const Plane<const T>& x, T b, const Plane<T>& y) {
   if (!x) return;
   const KernelTable<T>& kernels = table<T>();
   for_rows(0, x.rows, x.columns, [&](int j) { kernels.combine(a, x, b, y, j); });
+}
+
+template <class T>
+Moved move(T a, const Plane<const T>& x, const Plane<T>& y) {
+  Moved all;
+  if (!x) return all;
+  const KernelTable<T>& kernels = table<T>();
+  Moved* const of_row = row_buffer<Moved>(x.rows);
+  for_rows(0, x.rows, x.columns, [&](int j) { kernels.move(a, x, y, of_row[j], j); });
+  auto larger = [](double a, double b) { return b > a || b != b ? b : a; };
+  for (int j = 0; j < x.rows; ++j) {
+    all.squares += of_row[j].squares;
+    all.most = larger(all.most, of_row[j].most);
+    all.reach = larger(all.reach, of_row[j].reach);
+  }
+  return all;
 }
 
 template <class T>
@@ -87,8 +102,9 @@ double dot_curve(const Unknowns<const T>& a, const Unknowns<const T>& b) {
   template double dot(const Plane<const T>&, const Plane<const T>&);              \
   template double dot(const Unknowns<const T>&, const Unknowns<const T>&);        \
   template double dot_listed(const Unknowns<const T>&, const Unknowns<const T>&); \
-  template double largest(const Plane<const T>&);                                 \
+  template double squares_over(const Plane<const T>&, const Plane<const T>&);     \
   template void combine(T, const Plane<const T>&, T, const Plane<T>&);            \
+  template Moved move(T, const Plane<const T>&, const Plane<T>&);                 \
   template void combine(T, const Unknowns<const T>&, T, const Unknowns<T>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

@@ -3,8 +3,10 @@
 // Row sums and vector updates over whole fields.
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
+#include <drumhead/kernels/reduce.h>
 #include <drumhead/kernels/views.h>
 
 #include "batch.h"
@@ -20,20 +22,45 @@ template <class T>
   return sums.total();
 }
 
+template <class T>
+[[gnu::flatten]] double squares_over_row(const Plane<const T>& a, const Plane<const T>& b, int j) {
+  Sixteen sums;
+  for (int parity = 0; parity < 2; ++parity)
+    sums.add_squares_over(a.half(j, parity), b.half(j, parity), half_count(a.columns, parity));
+  return sums.total();
+}
+
 /// The bits of |a| as an integer are ordered like |a|, with every NaN beyond infinity: a maximum
 /// that vectorises and keeps a NaN.
 template <class T>
-[[gnu::flatten]] double largest_row(const Plane<const T>& a, int j) {
-  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-  Bits largest = 0;
+using SizeBits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+template <class T>
+SizeBits<T> size_bits(T value) {
+  return std::bit_cast<SizeBits<T>>(value) & (~SizeBits<T>(0) >> 1);
+}
+
+/// y += a x where x is finite, and what that moved.
+template <class T>
+[[gnu::flatten]] void move_row(T a, const Plane<const T>& x, const Plane<T>& y, Moved& moved,
+                               int j) {
+  const SizeBits<T> infinite = size_bits(std::numeric_limits<T>::infinity());
+  SizeBits<T> most = 0, reach = 0;
+  Sixteen squares;
   for (int parity = 0; parity < 2; ++parity) {
-    const T* values = a.half(j, parity);
-    for (int k = 0; k < half_count(a.columns, parity); ++k) {
-      const Bits size = std::bit_cast<Bits>(values[k]) & (~Bits(0) >> 1);
-      largest = size > largest ? size : largest;
+    const T* __restrict in = x.half(j, parity);
+    T* __restrict out = y.half(j, parity);
+    const int count = half_count(x.columns, parity);
+    for (int k = 0; k < count; ++k) {
+      const SizeBits<T> size = size_bits(in[k]);
+      const T step = a * in[k], there = out[k] + (size < infinite ? step : T(0));
+      out[k] = there;
+      const SizeBits<T> far = size_bits(there);
+      most = size > most ? size : most;
+      reach = far > reach ? far : reach;
     }
+    squares.add_products(in, in, count);
   }
-  return double(std::bit_cast<T>(largest));
+  moved = {squares.total(), double(std::bit_cast<T>(most)), double(std::bit_cast<T>(reach))};
 }
 
 /// y = a x + b y; b = 0 does not read y.

@@ -22,6 +22,19 @@ struct Sixteen {
       for (int l = 0; l < 16; ++l) at[l] += double(a[k + l]) * double(b[k + l]);
     for (int l = 0; k + l < count; ++l) at[l] += double(a[k + l]) * double(b[k + l]);
   }
+  /// a²/b where b > 0.
+  template <class T>
+  void add_squares_over(const T* a, const T* b, int count) {
+    auto term = [](double value, double over) {
+      const bool counts = over > 0.0;
+      const double kept = counts ? value : 0.0;
+      return kept * kept / (counts ? over : 1.0);
+    };
+    int k = 0;
+    for (; k + 16 <= count; k += 16)
+      for (int l = 0; l < 16; ++l) at[l] += term(double(a[k + l]), double(b[k + l]));
+    for (int l = 0; k + l < count; ++l) at[l] += term(double(a[k + l]), double(b[k + l]));
+  }
   double total() const {
     double sum = 0.0;
     for (int l = 0; l < 16; ++l) sum += at[l];

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <drumhead/kernels/folds.h>
+
 namespace drumhead::multigrid {
 namespace {
 
@@ -78,10 +80,10 @@ CellJ cell_J(const Solution& s, int i, int j, int c) {
     }
     return {moved / rest, least};
   }
-  const double h = s.lattice.cell_px;
+  const double scale = 1.0 / s.lattice.cell_px;
   const std::size_t row = std::size_t(s.lattice.nx) + 1, k = std::size_t(j) * row + std::size_t(i);
   auto node = [&](std::size_t n, double x, double y) {
-    return grid::Point{x + s.u_px[n] / h, y + s.v_px[n] / h};
+    return grid::Point{x + scale * s.u_px[n], y + scale * s.v_px[n]};
   };
   const grid::Point p00 = node(k, 0, 0), p10 = node(k + 1, 1, 0), p01 = node(k + row, 0, 1),
                     p11 = node(k + row + 1, 1, 1);
@@ -115,20 +117,27 @@ CellJ cell_J(const Solution& s, int i, int j) { return cell_J(s, i, j, s.split.v
 
 FoldReport find_folds(const Solution& s) {
   FoldReport folds;
-  folds.min_J = folds.min_corner_J = 1.0;
-  std::size_t next = 0;  // split cell
-  for (int j = 0; j < s.lattice.ny; ++j)
-    for (int i = 0; i < s.lattice.nx; ++i) {
-      const bool split = next < s.split.column.size() && s.split.column[next] == i &&
-                         int(next) < s.split.row_begin[std::size_t(j) + 1];
-      const auto [centre, least] = cell_J(s, i, j, split ? int(next++) : -1);
-      folds.min_J = std::min(folds.min_J, centre);
-      folds.min_corner_J = std::min(folds.min_corner_J, least);
-      folds.inverted_cells += centre < 0.0;
-      folds.folded_cells += least < 0.0;
-      if (least < 0.0 && folds.places_px.size() < kMostPlaces)
-        folds.places_px.push_back(fold_place(s, i, j));
+  const kernels::LatticeMapView map = map_of(s);
+  const std::vector<kernels::RowFolds> rows = kernels::count_folds(map);
+  for (int j = 0; j < s.lattice.ny; ++j) {
+    kernels::RowFolds row = rows[std::size_t(j)];
+    const int begin = map.split.row_begin ? map.split.row_begin[j] : 0;
+    const int end = map.split.row_begin ? map.split.row_begin[j + 1] : 0;
+    for (int c = begin; c < end; ++c) {
+      const auto [centre, least] = cell_J(s, map.split.column[c], j, c);
+      row.least_J = std::min(row.least_J, centre);
+      row.least_corner_J = std::min(row.least_corner_J, least);
+      row.inverted += centre < 0.0;
+      row.folded += least < 0.0;
     }
+    folds.min_J = std::min(folds.min_J, row.least_J);
+    folds.min_corner_J = std::min(folds.min_corner_J, row.least_corner_J);
+    folds.inverted_cells += row.inverted;
+    folds.folded_cells += row.folded;
+    if (row.folded == 0) continue;
+    for (int i = 0; i < s.lattice.nx && folds.places_px.size() < kMostPlaces; ++i)
+      if (cell_J(s, i, j).least_corner < 0.0) folds.places_px.push_back(fold_place(s, i, j));
+  }
   return folds;
 }
 

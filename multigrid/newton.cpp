@@ -49,7 +49,10 @@ constexpr double kAccurate = 0.1;
 
 template <class T>
 Newton<T>::Newton(Hierarchy<T>& hierarchy, int top, grid::MemoryMeter& meter)
-    : hierarchy_(hierarchy), level_(hierarchy[top]), meter_(meter) {}
+    : hierarchy_(hierarchy),
+      level_(hierarchy[top]),
+      meter_(meter),
+      stiffness_(total_stiffness(level_)) {}
 
 template <class T>
 void Newton<T>::set_force(bool pressure) {
@@ -135,9 +138,11 @@ double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
   const auto f = level_.f.view();
   double sum = kernels::dot<T>(f.x, f.x) + kernels::dot<T>(f.y, f.y) + kernels::dot_curve<T>(f, f);
-  if (pressure)
-    sum += (kernels::dot<T>(f.p, f.p) + kernels::dot_listed<T>(f, f)) /
-           double(level_.spacing * level_.spacing);
+  if (pressure) {
+    volume_squares_ = kernels::dot<T>(f.p, f.p);
+    sum +=
+        (volume_squares_ + kernels::dot_listed<T>(f, f)) / double(level_.spacing * level_.spacing);
+  }
   for (const T value : level_.fq) sum += double(value) * double(value);
   return std::sqrt(sum);
 }
@@ -169,20 +174,21 @@ double Newton<T>::line_search(double longest) {
 /// Moves the state along d, `longest` at most, and sets the force there. A full step that brings
 /// all equations closer to zero is taken without asking the merit, which costs two energies, and
 /// which counts gaps absolutely: close to a solution the linear solver may leave one that is larger
-/// than before, yet negligible.
+/// than before, yet negligible. 0 where d is not finite.
 template <class T>
 double Newton<T>::take_step(double norm_before, double longest) {
   const bool pressure = level_.nonlinear();
   // arap: from folds on, equations closer to zero may be further from the minimum.
-  if (level_.solid.law.relief == T(0)) {
-    update(longest, pressure);
-    norm_ = force_norm(pressure);
-    const auto d = level_.d.view();
+  const double tried = level_.solid.law.relief == T(0) ? longest : 0.0;
+  update(tried, pressure);
+  if (tried > 0.0) {
+    if (moves_.finite) norm_ = force_norm(pressure);
     const bool exact = hierarchy_.traits().jump == 0.0 && !level_.conforming;
-    const bool tail = exact && std::max(kernels::largest<T>(d.x), kernels::largest<T>(d.y)) < kTail;
-    if (norm_ < (tail ? 1.0 : kSolves) * norm_before) return longest;
+    const bool tail = exact && moves_.largest < kTail;
+    if (moves_.finite && norm_ < (tail ? 1.0 : kSolves) * norm_before) return longest;
     update(-longest, pressure);
   }
+  if (!moves_.finite) return 0.0;
   const double step = line_search(longest);
   if (step > 0.0) update(step, pressure);
   norm_ = force_norm(pressure);
@@ -205,20 +211,28 @@ double Newton<T>::drop_momentum() {
 template <class T>
 double Newton<T>::take_area_step(double gap, double enough) {
   update(1.0, true);
-  norm_ = force_norm(true);
-  if (volume_gap(level_, enough) < gap) return 1.0;
+  if (moves_.finite) {
+    norm_ = force_norm(true);
+    if (volume_gap(level_, volume_squares_, stiffness_, enough) < gap) return 1.0;
+  }
   update(-1.0, true);
   norm_ = force_norm(true);
   return 0.0;
 }
 
+/// Moves the state by a share of d and takes the measure of d and of the state on the way.
 template <class T>
 void Newton<T>::update(double step, bool pressure) {
   const auto d = level_.d.view();
-  kernels::combine<T>(T(step), kernels::Plane<const T>(d.x), T(1), level_.ux.view());
-  kernels::combine<T>(T(step), kernels::Plane<const T>(d.y), T(1), level_.uy.view());
-  if (pressure)
-    kernels::combine<T>(T(step), kernels::Plane<const T>(d.p), T(1), level_.pressure.view());
+  const kernels::Moved x = kernels::move<T>(T(step), d.x, level_.ux.view());
+  const kernels::Moved y = kernels::move<T>(T(step), d.y, level_.uy.view());
+  kernels::Moved p;
+  if (pressure) p = kernels::move<T>(T(step), d.p, level_.pressure.view());
+  moves_ = {.rms = std::sqrt((x.squares + y.squares) / double(level_.nodes())),
+            .longest = std::hypot(x.most, y.most),
+            .largest = std::max(x.most, y.most),
+            .reach = std::max(x.reach, y.reach),
+            .finite = std::isfinite(x.squares + y.squares + p.squares)};
   for (std::size_t k = 0; pressure && k < level_.d.listed.size(); ++k)
     level_.conforming->pressure[k] += T(step) * level_.d.listed[k];
   if (level_.conforming)
@@ -261,9 +275,7 @@ LinearReport Newton<T>::harmonic(const LinearOptions& options) {
 /// precision of T.
 template <class T>
 double Newton<T>::precision() const {
-  const double largest =
-      std::max(kernels::largest<T>(level_.ux.view()), kernels::largest<T>(level_.uy.view()));
-  return double(std::numeric_limits<T>::epsilon()) * std::max(1.0, largest);
+  return double(std::numeric_limits<T>::epsilon()) * std::max(1.0, moves_.reach);
 }
 
 template <class T>
@@ -347,23 +359,23 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     accuracy.set(norm, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
-    const double squares = kernels::dot<T>(d.x, d.x) + kernels::dot<T>(d.y, d.y);
-    const double rms = std::sqrt(squares / double(level_.nodes()));
-    if (!std::isfinite(rms + linear.residual + kernels::dot<T>(d.p, d.p) +
-                       kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d)))
+    if (!std::isfinite(linear.residual + kernels::dot_listed<T>(d, d) +
+                       kernels::dot_curve<T>(d, d)))
       return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)
                       : take_step(norm, length.longest());
+    if (!moves_.finite) return ended(Status::not_finite);
+    const double rms = moves_.rms;
     const bool shortened = step.step < std::min(1.0, length.longest());
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * rms;
-    step.dx_max_px = step.step * std::hypot(kernels::largest<T>(d.x), kernels::largest<T>(d.y));
+    step.dx_max_px = step.step * moves_.longest;
     if (!areas && accuracy.raised_by(step, shortened, report)) continue;
     const bool directions = (!options.adaptive && length.slow(rms)) || judge.uneven();
     const double cosine = directions ? turn.cosine_with(d) : kUnknown;
-    const bool ends = judge.ends_with(step, rms, shortened, precision(),
-                                      volume_gap(level_, options.most_volume_gap), cosine);
+    const double gap = volume_gap(level_, volume_squares_, stiffness_, options.most_volume_gap);
+    const bool ends = judge.ends_with(step, rms, shortened, precision(), gap, cosine);
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;

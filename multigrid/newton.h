@@ -110,10 +110,22 @@ class Newton {
   Hierarchy<T>& hierarchy_;
   Level<T>& level_;
   grid::MemoryMeter& meter_;
+  const double stiffness_;  ///< Σ mu
+  /// Of d, whatever share of it was taken, and of the state after the last update.
+  struct Moves {
+    double rms = 0.0;
+    double longest = 0.0;  ///< at most, of a node: from the largest dx and dy
+    double largest = 0.0;  ///< component
+    double reach = 0.0;    ///< largest component of a displacement
+    bool finite = true;
+  };
+
   std::vector<double> gap_, slope_;  ///< per curve row: b − W u − M q⁺ and −W du
   double penalty_ = 0.0;             ///< nu
   double norm_ = 0.0;                ///< of the force that was set last
-  int inverted_cells_ = 0;           ///< at the state of that force
+  double volume_squares_ = 0.0;      ///< Σ g² over the cells' rows of that force
+  Moves moves_;
+  int inverted_cells_ = 0;  ///< at the state of that force
 };
 
 }  // namespace drumhead::multigrid

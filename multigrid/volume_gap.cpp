@@ -28,31 +28,38 @@ double part_gaps(const Level<T>& level) {
 }  // namespace
 
 template <class T>
-double volume_gap(const Level<T>& level, double enough) {
+double volume_gap(const Level<T>& level, double squares, double stiffness, double enough) {
   const double area = double(level.spacing) * double(level.spacing);
   // −A (J* − 1 − P/kappa)
-  const kernels::Plane<const T> g = level.f.view().p, mu = level.mu.view();
-  const kernels::Plane<const T> compliance = level.compliance.view();
+  const kernels::Plane<const T> g = level.f.view().p, compliance = level.compliance.view();
   if (!level.pressure || (!compliance && level.compliance_value == T(0))) return 0.0;
-  double gap = 0.0, rest = double(level.nx) * double(level.ny);
-  if (!compliance) gap = kernels::dot<T>(g, g) / double(level.compliance_value);
-  if (mu) rest = 0.0;
-  for (int j = 0; j < level.ny && (compliance || mu); ++j)
-    for (int i = 0; i < level.nx; ++i) {
-      if (compliance && compliance.at(i, j) > T(0))
-        gap += double(g.at(i, j)) * double(g.at(i, j)) / double(compliance.at(i, j));
-      if (mu) rest += double(mu.at(i, j));
-    }
+  double gap = compliance ? kernels::squares_over<T>(g, compliance)
+                          : squares / double(level.compliance_value);
   gap /= area;
   if (level.conforming) gap += part_gaps(level);
   gap *= 0.5;
-  if (enough == 0.0 || gap <= enough * area * rest) return gap / (area * rest);
+  if (enough == 0.0 || gap <= enough * area * stiffness) return gap / (area * stiffness);
   const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), {}, T(0));
   return gap / (sums.elastic + sums.volume);
 }
 
-template double volume_gap(const Level<float>&, double);
-template double volume_gap(const Level<double>&, double);
+template <class T>
+double total_stiffness(const Level<T>& level) {
+  const kernels::Plane<const T> mu = level.mu.view();
+  if (!mu) return double(level.nx) * double(level.ny);
+  double sum = 0.0;
+  for (int j = 0; j < level.ny; ++j)
+    for (int parity = 0; parity < 2; ++parity) {
+      const T* half = mu.half(j, parity);
+      for (int k = 0; k < kernels::half_count(level.nx, parity); ++k) sum += double(half[k]);
+    }
+  return sum;
+}
+
+template double volume_gap(const Level<float>&, double, double, double);
+template double volume_gap(const Level<double>&, double, double, double);
+template double total_stiffness(const Level<float>&);
+template double total_stiffness(const Level<double>&);
 
 void note_areas(SolveReport& report) {
   if (!report.exact && report.status == Status::converged && report.volume_gap > kMostVolumeGap)

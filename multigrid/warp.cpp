@@ -73,22 +73,28 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                 ": must be at least 0");
 }
 
+/// Appends the rows of a plane, `scale` times.
+template <class T>
+void append(const kernels::Plane<const T>& plane, double scale, std::vector<double>& values) {
+  values.reserve(std::size_t(plane.columns) * std::size_t(plane.rows));
+  std::vector<double> row(std::size_t(plane.columns));
+  for (int j = 0; j < plane.rows; ++j) {
+    for (int parity = 0; parity < 2; ++parity) {
+      const T* half = plane.half(j, parity);
+      double* to = row.data() + parity;
+      for (int k = 0; k < kernels::half_count(plane.columns, parity); ++k)
+        to[2 * k] = scale * double(half[k]);
+    }
+    values.insert(values.end(), row.begin(), row.end());
+  }
+}
+
 template <class T>
 void export_state(const Hierarchy<T>& hierarchy, Solution& solution) {
   const Level<T>& level = hierarchy[0];
-  const double h = solution.lattice.cell_px;
-  const auto ux = level.ux.view(), uy = level.uy.view(), p = level.pressure.view();
-  solution.u_px.reserve(level.nodes());
-  solution.v_px.reserve(level.nodes());
-  solution.pressure.reserve(p ? solution.lattice.cells() : 0);
-  for (int j = 0; j <= level.ny; ++j)
-    for (int i = 0; i <= level.nx; ++i) {
-      solution.u_px.push_back(h * double(ux.at(i, j)));
-      solution.v_px.push_back(h * double(uy.at(i, j)));
-    }
-  if (!p) return;
-  for (int j = 0; j < level.ny; ++j)
-    for (int i = 0; i < level.nx; ++i) solution.pressure.push_back(double(p.at(i, j)));
+  append<T>(level.ux.view(), solution.lattice.cell_px, solution.u_px);
+  append<T>(level.uy.view(), solution.lattice.cell_px, solution.v_px);
+  if (level.pressure) append<T>(level.pressure.view(), 1.0, solution.pressure);
 }
 
 template <class T>

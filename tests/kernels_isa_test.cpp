@@ -156,8 +156,11 @@ TYPED_TEST(KernelsIsa, ReductionsAndUpdatesHaveTheScalarBits) {
     const double product = kernels::dot<T>(level.ux.view(), level.uy.view());
     kernels::combine<T>(T(0.3), level.d.view(), T(0.7), level.f.view());
     kernels::combine<T>(T(0.3), level.ux.view(), T(0), level.d.x.view());
-    const double size = kernels::largest<T>(level.f.x.view());
-    return fields::joined({level.f.values(), level.d.values(), {T(product), T(size)}});
+    const kernels::Moved moved = kernels::move<T>(T(0.3), level.ux.view(), level.f.x.view());
+    const double over = kernels::squares_over<T>(level.uy.view(), level.f.y.view());
+    return fields::joined({level.f.values(),
+                           level.d.values(),
+                           {T(product), T(over), T(moved.squares), T(moved.most), T(moved.reach)}});
   });
 }
 

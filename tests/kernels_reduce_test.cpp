@@ -62,33 +62,73 @@ TYPED_TEST(KernelsReduce, DotOfUnknownsAddsTheirFields) {
   }
 }
 
-TYPED_TEST(KernelsReduce, LargestFindsTheSizeInEveryPlace) {
+TYPED_TEST(KernelsReduce, SquaresOverLeaveOutWhatIsOverNothing) {
   using T = TypeParam;
   for_columns([](int columns) {
-    OwnedPlane<T> plane = filled<T>(columns, 2, 3);
+    const OwnedPlane<T> a = filled<T>(columns, 3, 1);
+    OwnedPlane<T> b(columns, 3);
+    b.set([](int i, int j) { return T((i + j) % 3 == 0 ? 0.0 : (i + j) % 3 == 1 ? 0.5 : 4.0); });
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < columns; ++i)
+        if (b.view().at(i, j) > T(0))
+          sum += double(a.view().at(i, j)) * double(a.view().at(i, j)) / double(b.view().at(i, j));
+    EXPECT_EQ(kernels::squares_over<T>(a.view(), b.view()), sum);
+  });
+}
+
+TYPED_TEST(KernelsReduce, MoveIsACombinationAndItsSumOfSquares) {
+  using T = TypeParam;
+  for_columns([](int columns) {
+    const OwnedPlane<T> x = filled<T>(columns, 3, 5), y = filled<T>(columns, 3, 6);
+    OwnedPlane<T> out = filled<T>(columns, 3, 6);
+    const kernels::Moved moved = kernels::move<T>(T(0.3), x.view(), out.view());
+    EXPECT_EQ(moved.squares, kernels::dot<T>(x.view(), x.view()));
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < columns; ++i)
+        ASSERT_EQ(out.view().at(i, j), y.view().at(i, j) + T(0.3) * x.view().at(i, j));
+  });
+}
+
+TYPED_TEST(KernelsReduce, MoveFindsTheLargestSizesInEveryPlace) {
+  using T = TypeParam;
+  for_columns([](int columns) {
     for (int i = 0; i < columns; ++i) {
-      const T before = plane.view().at(i, 1);
-      plane.view().at(i, 1) = T(-5.0 - i);
-      EXPECT_EQ(kernels::largest<T>(plane.view()), 5.0 + i);
-      plane.view().at(i, 1) = before;
+      OwnedPlane<T> x = filled<T>(columns, 2, 3), y = filled<T>(columns, 2, 4);
+      x.view().at(i, 1) = T(-5.0 - i);
+      y.view().at(columns - 1 - i, 0) = T(-50.0);
+      x.view().at(columns - 1 - i, 0) = T(1.0);
+      const kernels::Moved moved = kernels::move<T>(T(0.25), x.view(), y.view());
+      EXPECT_EQ(moved.most, 5.0 + i);
+      EXPECT_EQ(moved.reach, 49.75);
     }
   });
 }
 
-TYPED_TEST(KernelsReduce, LargestDoesNotHideANaN) {
+TYPED_TEST(KernelsReduce, MoveLeavesWhereItWouldNotBeFinite) {
   using T = TypeParam;
-  for_columns([](int columns) {
-    OwnedPlane<T> plane = filled<T>(columns, 3, 4);
-    plane.view().at(columns / 2, 1) = std::numeric_limits<T>::quiet_NaN();
-    EXPECT_TRUE(std::isnan(kernels::largest<T>(plane.view())));
-  });
+  for (const T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(),
+                      -std::numeric_limits<T>::infinity()})
+    for_columns([bad](int columns) {
+      OwnedPlane<T> x = filled<T>(columns, 3, 5), y = filled<T>(columns, 3, 6);
+      const OwnedPlane<T> before = filled<T>(columns, 3, 6);
+      const int i = columns / 2;
+      x.view().at(i, 1) = bad;
+      const kernels::Moved moved = kernels::move<T>(T(0.5), x.view(), y.view());
+      EXPECT_FALSE(std::isfinite(moved.squares));
+      EXPECT_FALSE(std::isfinite(moved.most));
+      EXPECT_LE(moved.reach, 3.0);
+      EXPECT_EQ(y.view().at(i, 1), before.view().at(i, 1));
+      EXPECT_EQ(y.view().at(0, 0), before.view().at(0, 0) + T(0.5) * x.view().at(0, 0));
+    });
 }
 
-TYPED_TEST(KernelsReduce, LargestOfInfinityIsInfinity) {
+TYPED_TEST(KernelsReduce, MoveDoesNotHideAStateThatIsNoNumber) {
   using T = TypeParam;
-  OwnedPlane<T> plane = filled<T>(9, 3, 4);
-  plane.view().at(4, 1) = -std::numeric_limits<T>::infinity();
-  EXPECT_TRUE(std::isinf(kernels::largest<T>(plane.view())));
+  const OwnedPlane<T> x = filled<T>(9, 3, 5);
+  OwnedPlane<T> y = filled<T>(9, 3, 6);
+  y.view().at(3, 0) = std::numeric_limits<T>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(kernels::move<T>(T(1), x.view(), y.view()).reach));
 }
 
 TYPED_TEST(KernelsReduce, CombineIsALinearCombination) {

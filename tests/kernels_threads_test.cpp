@@ -126,12 +126,17 @@ TYPED_TEST(KernelsThreads, SumsHaveTheBitsOfOneThread) {
   kernels::RowScratch<T> scratch(level.spec.nx + 1, kMostThreads);
   expect_bits_of_one_thread([&] {
     const kernels::EnergySums sums = kernels::energy<T>(level.membrane(), level.d.view(), T(0.3));
+    RandomLevel<T> other(large(true, fields::Kappa::cells));
+    const kernels::Moved moved = kernels::move<T>(T(0.3), level.d.x.view(), other.f.x.view());
     return std::vector<double>{sums.elastic,
                                sums.volume,
                                sums.volume_merit,
                                sums.inverted_cells,
                                kernels::dot<T>(level.d.view(), level.f.view()),
-                               kernels::largest<T>(level.d.x.view()),
+                               kernels::squares_over<T>(level.f.p.view(), level.d.p.view()),
+                               moved.squares,
+                               moved.most,
+                               moved.reach,
                                kernels::residual_norm2<T>(level.system(), scratch)};
   });
 }

@@ -19,13 +19,23 @@ double dot_listed(const Unknowns<const T>& a, const Unknowns<const T>& b);
 template <class T>
 double dot_curve(const Unknowns<const T>& a, const Unknowns<const T>& b);
 
-/// max |a|; NaN if any value is NaN.
+/// Σ a²/b over all values where b > 0.
 template <class T>
-double largest(const Plane<const T>& a);
+double squares_over(const Plane<const T>& a, const Plane<const T>& b);
 
 /// y = a x + b y; with b = 0, y is not read.
 template <class T>
 void combine(T a, const Plane<const T>& x, T b, const Plane<T>& y);
+/// What a step moved.
+struct Moved {
+  double squares = 0.0;  ///< Σ x²: not finite where any x is not
+  double most = 0.0;     ///< max |x|; NaN if any is
+  double reach = 0.0;    ///< max |y| after the step; NaN if any is
+};
+/// y += a x, but where x is not finite y stays: the same step backwards takes all of it back, up to
+/// rounding.
+template <class T>
+Moved move(T a, const Plane<const T>& x, const Plane<T>& y);
 /// x, y, p, the list and the curve nodes.
 template <class T>
 void combine(T a, const Unknowns<const T>& x, T b, const Unknowns<T>& y);
