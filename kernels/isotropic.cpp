@@ -12,6 +12,7 @@
 
 #include "kernel_table.h"
 #include "parallel.h"
+#include "soft_isotropic.h"
 #include "special_energy.h"
 #include "special_isotropic.h"
 #include "special_sweeps.h"
@@ -50,8 +51,7 @@ void block_step(const LevelSystem<T>& level, T omega) {
 template <class T>
 void residual(const LevelSystem<T>& level) {
   apply_isotropic<T>(level.membrane, level.d, level.product);
-  combine<T>(T(1), level.f.x, T(-1), level.product.x);
-  combine<T>(T(1), level.f.y, T(-1), level.product.y);
+  combine<T>(T(1), level.f, T(-1), level.product);
 }
 
 template <class T>
@@ -68,12 +68,14 @@ void restrict_residual(const LevelSystem<T>& level, const Plane<const T>& fine,
   });
 }
 
-/// Gauss–Seidel on the nodes of special cells: even rows, then odd ones.
+/// Gauss–Seidel on the nodes of special cells: odd rows, then even ones.
 template <class T>
 void relax_near(const LevelSystem<T>& level) {
-  for (const int odd : {0, 1})
-    for (int j = 1 + odd; j + 1 < level.d.x.rows; j += 2)
+  for (const int first : {1, 0})
+    for (int j = first; j + 1 < level.d.x.rows; j += 2) {
       relax_block_row<T>(level.membrane, level.f, level.d, j);
+      relax_curve_block_row<T>(*level.membrane.special, level.f, level.d, j);
+    }
 }
 
 template <class T>
@@ -114,8 +116,9 @@ void apply_isotropic(const Membrane<T>& m, const Unknowns<const T>& d, const Unk
   const IsotropicRows<T>& rows = isotropic_rows(m);
   for_cell_rows(d.x.rows - 1, d.x.columns,
                 [&](bool first, int j) { rows.product(m, d, out, first, j); });
-  if (m.special)
-    for_nodes(d, d.x.columns, [&](int j) { overwrite_block_row(*m.special, d, out, j); });
+  if (!m.special) return;
+  for_nodes(d, d.x.columns, [&](int j) { overwrite_block_row(*m.special, d, out, j); });
+  write_curve_blocks(*m.special, d, out);
 }
 
 template <class T>
@@ -132,6 +135,7 @@ void relax_isotropic(const LevelSystem<T>& level, bool from_zero, const Unknowns
   if (from_zero) {
     combine<T>(T(0), level.f.x, T(0), d.x);
     combine<T>(T(0), level.f.y, T(0), d.y);
+    std::fill_n(d.curve, d.curve_count, T(0));
   }
   if (coarse_d)
     for_nodes(d, d.x.columns, [&](int j) {
@@ -154,12 +158,14 @@ void relax_isotropic(const LevelSystem<T>& level, bool from_zero, const Unknowns
   if (level.coarse_special)
     for (int j = 1; j + 1 < coarse_f->x.rows; ++j)
       clear_without_equation(*level.coarse_special, *coarse_f, j);
+  if (level.transfer) restrict_to_curves<T>(*level.transfer, level.product, *coarse_f);
 }
 
 template <class T>
 double isotropic_residual_norm2(const LevelSystem<T>& level) {
   residual(level);
-  return dot<T>(level.product.x, level.product.x) + dot<T>(level.product.y, level.product.y);
+  return dot<T>(level.product.x, level.product.x) + dot<T>(level.product.y, level.product.y) +
+         dot_curve<T>(level.product, level.product);
 }
 
 template <class T>
@@ -215,6 +221,7 @@ void average_tangents(const Membrane<T>& m, const Plane<T>& coarse) {
 template <class T>
 double largest_eigenvalue(const LevelSystem<T>& level, int steps) {
   const Unknowns<T>&d = level.d, &product = level.product;
+  std::fill_n(d.curve, d.curve_count, T(0));
   // Signs without a pattern: all frequencies, high ones most.
   unsigned bits = 1;
   for (int j = 1; j + 1 < d.x.rows; ++j)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <drumhead/kernels/model.h>
 #include <drumhead/kernels/special.h>
 
 #include "special_state.h"
@@ -27,6 +28,33 @@ NodeCoupling<T>& coupling_to(std::vector<NodeCoupling<T>>& list, Name name) {
   for (NodeCoupling<T>& c : list)
     if (c.column == name.column && c.row == name.row) return c;
   return list.emplace_back(NodeCoupling<T>{name.column, name.row});
+}
+
+/// A coupling between any vertex of a part and those of its vertices that are soft curve nodes.
+/// `soft`(vertex): number of one, −1: it is none.
+template <class T, class F>
+void couple_parts(const SpecialRows<T>& rows, F&& soft, Lists<NodeCoupling<T>>& node,
+                  Lists<NodeCoupling<T>>& of_near) {
+  const SpecialCells<T>& cells = rows.cells();
+  for_special(cells, [&](int n, int i, int j) {
+    auto unknown_corner = [&](int v) {
+      return v < kFirstCrossing ? rows.unknown_corner(n, v) : -1;
+    };
+    for_parts(cells, n, [&](int p) {
+      const auto begin = cells.vertex.begin() + cells.vertex_begin[std::size_t(p)],
+                 end = cells.vertex.begin() + cells.vertex_begin[std::size_t(p) + 1];
+      for (auto a = begin; a != end; ++a) {
+        const int s = soft(a->vertex);
+        for (auto b = begin; b != end && s >= 0; ++b)
+          if (const int near = unknown_corner(b->vertex); near >= 0) {
+            coupling_to(node[std::size_t(s)], name_of(b->vertex, i, j));
+            coupling_to(of_near[std::size_t(near)], name_of(a->vertex, i, j));
+          } else if (b != a && soft(b->vertex) >= 0) {
+            coupling_to(node[std::size_t(s)], name_of(b->vertex, i, j));
+          }
+      }
+    });
+  });
 }
 
 /// One list after the other; begins of all of them and the end.
@@ -77,6 +105,8 @@ SoftRows<T>::SoftRows(const SpecialRows<T>& rows, const Membrane<T>& membrane) {
   auto soft = [&](int vertex) {
     return vertex >= kFirstCrossing ? index_[std::size_t(vertex - kFirstCrossing)] : -1;
   };
+  const bool blocks = isotropic(membrane.law.model);
+  if (blocks) couple_parts(rows, soft, node, of_near);
   for_special(cells, [&](int n, int i, int j) {
     const T mu = mu_at(membrane, i, j);
     for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
@@ -114,6 +144,11 @@ SoftRows<T>::SoftRows(const SpecialRows<T>& rows, const Membrane<T>& membrane) {
     row_[n].part_begin = part_begin[n];
     if (row_[n].diagonal > T(0)) row_[n].inverse = T(1) / row_[n].diagonal;
   }
+  if (!blocks) return;
+  node_block_.resize(node_.size());
+  of_near_block_.resize(of_near_.size());
+  own_block_.resize(std::size_t(size()));
+  inverse_block_.resize(std::size_t(size()));
 }
 
 template <class T>
@@ -162,11 +197,50 @@ void SoftRows<T>::linearise(const SpecialRows<T>& rows, const Membrane<T>& m) {
 }
 
 template <class T>
+void SoftRows<T>::clear_blocks(const SpecialCells<T>& cells) {
+  std::ranges::fill(node_block_, NodeBlock<T>{});
+  std::ranges::fill(of_near_block_, NodeBlock<T>{});
+  for (std::size_t n = 0; n < own_block_.size(); ++n) {
+    const T stiffness = cells.crossing[std::size_t(row_[n].node)].stiffness;
+    own_block_[n] = {.xx = stiffness, .yy = stiffness};
+  }
+}
+
+template <class T>
+NodeBlock<T>* SoftRows<T>::find_block(int curve_node, int column, int row) {
+  const std::size_t s = std::size_t(index(curve_node));
+  if (row < 0 && column == curve_node) return &own_block_[s];
+  for (int k = row_[s].node_begin; k < row_[s + 1].node_begin; ++k)
+    if (node(k).column == column && node(k).row == row) return &node_block_[std::size_t(k)];
+  return nullptr;
+}
+
+template <class T>
+NodeBlock<T>& SoftRows<T>::find_block_of_near(int n, int curve_node) {
+  int k = near_begin(n);
+  while (of_near(k).column != curve_node) ++k;
+  return of_near_block_[std::size_t(k)];
+}
+
+template <class T>
+void SoftRows<T>::invert_blocks(T mu) {
+  const T least = T(1e-4) * mu;
+  for (std::size_t n = 0; n < own_block_.size(); ++n) {
+    const NodeBlock<T>& own = own_block_[n];
+    const T a = own.xx + least, b = own.xy, c = own.yy + least;
+    const T inverse = T(1) / std::max(a * c - b * b, least * least);
+    inverse_block_[n] = {c * inverse, -b * inverse, -b * inverse, a * inverse};
+  }
+}
+
+template <class T>
 std::size_t SoftRows<T>::bytes() const {
   return (index_.size() + row_begin_.size() + near_begin_.size() + area_begin_.size()) *
              sizeof(int) +
          row_.size() * sizeof(Row) + (node_.size() + of_near_.size()) * sizeof(NodeCoupling<T>) +
-         (part_.size() + of_part_.size()) * sizeof(AreaCoupling<T>);
+         (part_.size() + of_part_.size()) * sizeof(AreaCoupling<T>) +
+         (node_block_.size() + of_near_block_.size() + 2 * own_block_.size()) *
+             sizeof(NodeBlock<T>);
 }
 
 template class SoftRows<float>;

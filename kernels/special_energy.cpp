@@ -67,39 +67,6 @@ Vector2<T> regular_force(const Membrane<T>& m, int i, int j, int q) {
   return force;
 }
 
-/// Adds to the force on a vertex of special cell n = (i, j); those on known nodes are not kept.
-template <class T>
-void add_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j, int vertex,
-               Vector2<T> force) {
-  if (vertex >= kFirstCrossing) {
-    const std::size_t c = std::size_t(vertex - kFirstCrossing);
-    if (!rows.soft() || rows.cells().crossing[c].known()) return;
-    f.curve[2 * c] += force.x;
-    f.curve[2 * c + 1] += force.y;
-  } else if (rows.unknown_corner(n, vertex) >= 0) {
-    f.x.at(i + (vertex & 1), j + (vertex >> 1)) += force.x;
-    f.y.at(i + (vertex & 1), j + (vertex >> 1)) += force.y;
-  }
-}
-
-/// Forces of the springs, before all others on curve nodes, after the regular ones on lattice
-/// nodes.
-template <class T>
-void add_spring_force(const SpecialCells<T>& cells, const Unknowns<T>& f) {
-  for (int j = 0; j + 1 < int(cells.held_begin.size()); ++j)
-    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
-      const HeldNode<T>& node = cells.held[std::size_t(k)];
-      if (node.known()) continue;
-      f.x.at(node.place, j) -= node.stiffness * node.off_x;
-      f.y.at(node.place, j) -= node.stiffness * node.off_y;
-    }
-  for (int c = 0; c < f.curve_count / 2; ++c) {
-    const HeldNode<T>& node = cells.crossing[std::size_t(c)];
-    f.curve[2 * c] = node.known() ? T(0) : -node.stiffness * node.off_x;
-    f.curve[2 * c + 1] = node.known() ? T(0) : -node.stiffness * node.off_y;
-  }
-}
-
 template <class T>
 void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i, int j) {
   const SpecialRows<T>& rows = *m.special;
@@ -113,7 +80,7 @@ void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i
     const T scale = mu * triangle.area;
     for (std::size_t a = 0; a < 3; ++a) {
       const T gx = triangle.gx[a], gy = triangle.gy[a];
-      add_force(
+      add_vertex_force(
           f, rows, n, i, j, triangle.vertex[a],
           {-(scale * (gx + (g.xx * gx + g.xy * gy))), -(scale * (gy + (g.yx * gx + g.yy * gy)))});
     }
@@ -133,9 +100,9 @@ bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, in
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
     const Vector2<T> to = displacement(next.vertex), from = displacement(previous.vertex);
-    add_force(f, rows, n, i, j, cells.vertex[std::size_t(v)].vertex,
-              {-(half * ((next.y - previous.y) + (to.y - from.y))),
-               half * ((next.x - previous.x) + (to.x - from.x))});
+    add_vertex_force(f, rows, n, i, j, cells.vertex[std::size_t(v)].vertex,
+                     {-(half * ((next.y - previous.y) + (to.y - from.y))),
+                      half * ((next.x - previous.x) + (to.x - from.x))});
   }
   const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, displacement);
   f.listed[p] = area * compliance_at(m, i, j) * m.listed[p] - change;
@@ -143,6 +110,36 @@ bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, in
 }
 
 }  // namespace
+
+template <class T>
+void add_vertex_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j,
+                      int vertex, Vector2<T> force) {
+  if (vertex >= kFirstCrossing) {
+    const std::size_t c = std::size_t(vertex - kFirstCrossing);
+    if (!rows.soft() || rows.cells().crossing[c].known()) return;
+    f.curve[2 * c] += force.x;
+    f.curve[2 * c + 1] += force.y;
+  } else if (rows.unknown_corner(n, vertex) >= 0) {
+    f.x.at(i + (vertex & 1), j + (vertex >> 1)) += force.x;
+    f.y.at(i + (vertex & 1), j + (vertex >> 1)) += force.y;
+  }
+}
+
+template <class T>
+void add_spring_force(const SpecialCells<T>& cells, const Unknowns<T>& f) {
+  for (int j = 0; j + 1 < int(cells.held_begin.size()); ++j)
+    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
+      const HeldNode<T>& node = cells.held[std::size_t(k)];
+      if (node.known()) continue;
+      f.x.at(node.place, j) -= node.stiffness * node.off_x;
+      f.y.at(node.place, j) -= node.stiffness * node.off_y;
+    }
+  for (int c = 0; c < f.curve_count / 2; ++c) {
+    const HeldNode<T>& node = cells.crossing[std::size_t(c)];
+    f.curve[2 * c] = node.known() ? T(0) : -node.stiffness * node.off_x;
+    f.curve[2 * c + 1] = node.known() ? T(0) : -node.stiffness * node.off_y;
+  }
+}
 
 template <class T>
 void clear_special_force(const Membrane<T>& m, const Unknowns<T>& f, int j) {
@@ -180,7 +177,6 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
   return inverted;
 }
 
-/// Adds the energies of the springs of nodes of row j.
 template <class T>
 void add_spring_energy(const SpecialRows<T>& rows, const Unknowns<const T>& d, T step,
                        EnergySums& sums, int j) {
@@ -245,10 +241,15 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
   add_spring_energy(*m.special, d, step, sums, j);
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                                                  \
-  template int special_force(const Membrane<T>&, const Unknowns<T>&);                            \
-  template void clear_special_force(const Membrane<T>&, const Unknowns<T>&, int);                \
-  template void add_special_energy(const Membrane<T>&, const Unknowns<const T>&, T, EnergySums&, \
+#define DRUMHEAD_INSTANTIATE(T)                                                                    \
+  template void add_vertex_force(const Unknowns<T>&, const SpecialRows<T>&, int, int, int, int,    \
+                                 Vector2<T>);                                                      \
+  template void add_spring_force(const SpecialCells<T>&, const Unknowns<T>&);                      \
+  template void add_spring_energy(const SpecialRows<T>&, const Unknowns<const T>&, T, EnergySums&, \
+                                  int);                                                            \
+  template int special_force(const Membrane<T>&, const Unknowns<T>&);                              \
+  template void clear_special_force(const Membrane<T>&, const Unknowns<T>&, int);                  \
+  template void add_special_energy(const Membrane<T>&, const Unknowns<const T>&, T, EnergySums&,   \
                                    int);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)

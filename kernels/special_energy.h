@@ -4,12 +4,27 @@
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/special.h>
 
+#include "special_state.h"
+
 namespace drumhead::kernels {
 
 /// Overwrites f at near nodes (0 at known ones), in the plane of special cells (0) and in the list
 /// of parts by −∂E/∂(x, P) at the membrane's state. Returns the number of inverted special cells.
 template <class T>
 int special_force(const Membrane<T>& membrane, const Unknowns<T>& f);
+
+/// Adds to the force on a vertex of special cell n = (i, j); those on known nodes are not kept.
+template <class T>
+void add_vertex_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j,
+                      int vertex, Vector2<T> force);
+/// Forces of the springs of soft curves, before all others on curve nodes, after the regular ones
+/// on lattice nodes.
+template <class T>
+void add_spring_force(const SpecialCells<T>& cells, const Unknowns<T>& f);
+/// Adds the energies of the springs of nodes of row j.
+template <class T>
+void add_spring_energy(const SpecialRows<T>& rows, const Unknowns<const T>& d, T step,
+                       EnergySums& sums, int j);
 
 /// f at special cells of row j := that of a cell at rest, which does not count as inverted.
 template <class T>

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "soft_isotropic.h"
+#include "special_energy.h"
 #include "special_points.h"
 
 namespace drumhead::kernels {
@@ -15,25 +17,6 @@ std::size_t block_place(int own, int other) {
   return std::size_t(4 + ((other & 1) - (own & 1)) + 3 * ((other >> 1) - (own >> 1)));
 }
 
-/// The ten entries of a tangent on (a, b) as ∂²Ψ/∂F², F11 F21 F12 F22.
-template <class T>
-struct Stiffness {
-  T at[4][4];
-  explicit Stiffness(const T* entries) {
-    constexpr int kIndex[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    // a₁ = F11 + F22, a₂ = F21 − F12, b₁ = F11 − F22, b₂ = F21 + F12, all over √2
-    constexpr int kOne[4] = {0, 1, 3, 0}, kOther[4] = {2, 3, 1, 2};
-    constexpr T kSign[4] = {T(1), T(1), T(-1), T(-1)};
-    for (int p = 0; p < 4; ++p)
-      for (int q = 0; q < 4; ++q) {
-        auto entry = [&](int u, int v) { return entries[kIndex[u][v]]; };
-        at[p][q] = T(0.5) *
-                   ((entry(kOne[p], kOne[q]) + kSign[p] * kSign[q] * entry(kOther[p], kOther[q])) +
-                    (kSign[q] * entry(kOne[p], kOther[q]) + kSign[p] * entry(kOther[p], kOne[q])));
-      }
-  }
-};
-
 /// Adds a point's stiffness to the rows of the near nodes at a cell's corners.
 template <class T>
 void add_point(const Point<T>& point, const T* entries, const int* near,
@@ -44,20 +27,15 @@ void add_point(const Point<T>& point, const T* entries, const int* near,
     const int own = point.vertex[a];
     if (own >= kFirstCrossing || near[own] < 0) continue;
     BlockRow<T>& row = block[std::size_t(near[own])];
-    const T x = point.weight * point.gx[a], y = point.weight * point.gy[a];
-    T along[4][2];  // of F, for the node's x and y
-    for (int p = 0; p < 4; ++p) {
-      along[p][0] = x * k.at[p][0] + y * k.at[p][2];
-      along[p][1] = x * k.at[p][1] + y * k.at[p][3];
-    }
+    const PointRow<T> of_node(k, point, a);
     for (std::size_t b = 0; b < count; ++b) {
       if (point.vertex[b] >= kFirstCrossing) continue;
       const std::size_t place = block_place(own, point.vertex[b]);
-      const T gx = point.gx[b], gy = point.gy[b];
-      row.xx[place] += along[0][0] * gx + along[2][0] * gy;
-      row.xy[place] += along[1][0] * gx + along[3][0] * gy;
-      row.yx[place] += along[0][1] * gx + along[2][1] * gy;
-      row.yy[place] += along[1][1] * gx + along[3][1] * gy;
+      const NodeBlock<T> value = of_node.block(point, b);
+      row.xx[place] += value.xx;
+      row.xy[place] += value.xy;
+      row.yx[place] += value.yx;
+      row.yy[place] += value.yy;
     }
   }
 }
@@ -66,7 +44,8 @@ void add_point(const Point<T>& point, const T* entries, const int* near,
 template <class T>
 class Linearisation {
  public:
-  Linearisation(const Membrane<T>& m, std::vector<BlockRow<T>>& block) : m_(m), block_(block) {}
+  Linearisation(const Membrane<T>& m, std::vector<BlockRow<T>>& block, SoftRows<T>& soft)
+      : m_(m), block_(block), soft_(soft) {}
 
   void fringe(const FringeCell& cell) {
     if (m_.tangent) {
@@ -94,7 +73,7 @@ class Linearisation {
       std::copy_n(entries_, kEntries, mean);
       for (int t = cells.triangle_begin[std::size_t(n)];
            t < cells.triangle_begin[std::size_t(n) + 1]; ++t)
-        add_point(point_of(cells.triangle[std::size_t(t)]), entries_, near, block_);
+        add(point_of(cells.triangle[std::size_t(t)]), near, i, j);
       return;
     }
     std::fill_n(mean, kEntries, T(0));
@@ -102,7 +81,7 @@ class Linearisation {
     const CellLaw<T> law(m_, i, j);
     law.for_points(n, [&](const Point<T>& point, Share share, T shift) {
       evaluate(law, point, share, shift);
-      add_point(point, entries_, near, block_);
+      add(point, near, i, j);
       for (int e = 0; e < kEntries; ++e) mean[e] += point.weight * entries_[e];
       if (share == Share::shape) area += point.weight;
     });
@@ -110,6 +89,10 @@ class Linearisation {
   }
 
  private:
+  void add(const Point<T>& point, const int* near, int i, int j) {
+    add_point(point, entries_, near, block_);
+    if (soft_.size() > 0) add_curve_point(point, entries_, near, i, j, soft_);
+  }
   void evaluate(const CellLaw<T>& law, const Point<T>& point, Share share, T shift) {
     law.law(share).tangent(law.state(point, share, shift), law.least_eigenvalue(), entries_);
   }
@@ -120,6 +103,7 @@ class Linearisation {
 
   const Membrane<T>& m_;
   std::vector<BlockRow<T>>& block_;
+  SoftRows<T>& soft_;
   T entries_[kEntries];
 };
 
@@ -132,11 +116,12 @@ void add_force(const Point<T>& point, const PointStress<T>& stress, F&& add) {
   }
 }
 
-/// Whether curves and the fixed boundary hold all of a point's nodes.
+/// Whether hard curves and the fixed boundary hold all of a point's nodes.
 template <class T>
 bool is_held(const SpecialRows<T>& rows, int n, const Point<T>& point) {
   return std::none_of(point.vertex.begin(), point.vertex.begin() + point.count, [&](int vertex) {
-    return vertex < kFirstCrossing && rows.unknown_corner(n, vertex) >= 0;
+    return vertex < kFirstCrossing ? rows.unknown_corner(n, vertex) >= 0
+                                   : is_soft(rows.soft(), vertex);
   });
 }
 
@@ -145,16 +130,36 @@ void clear_known_row(const SpecialRows<T>& rows, const Unknowns<T>& f, int j) {
   for (const int i : rows.known(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
 }
 
-/// A near node's row times d.
+/// The row of near node n = (i, j) times d.
 template <class T>
-Vector2<T> block_times(const BlockRow<T>& row, const Unknowns<const T>& d, int i, int j) {
+Vector2<T> block_times(const SpecialRows<T>& rows, int n, const Unknowns<const T>& d, int i,
+                       int j) {
+  const BlockRow<T>& row = rows.block(n);
   Vector2<T> sum{T(0), T(0)};
   for (int k = 0; k < 9; ++k) {
     const T x = d.x.at(i + k % 3 - 1, j + k / 3 - 1), y = d.y.at(i + k % 3 - 1, j + k / 3 - 1);
     sum.x += row.xx[k] * x + row.xy[k] * y;
     sum.y += row.yx[k] * x + row.yy[k] * y;
   }
+  if (rows.soft()) add_curve_blocks_to_near(*rows.soft(), n, d.curve, sum);
   return sum;
+}
+
+/// Adds the springs of soft curves' lattice nodes to their rows.
+template <class T>
+void add_springs(const SpecialRows<T>& rows, std::vector<BlockRow<T>>& block) {
+  const SpecialCells<T>& cells = rows.cells();
+  for (int j = 0; j + 1 < int(cells.held_begin.size()); ++j) {
+    int n = rows.near_begin(j);
+    for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
+      const HeldNode<T>& node = cells.held[std::size_t(k)];
+      if (node.known()) continue;
+      while (n < rows.near_begin(j + 1) && rows.near(n).column < node.place) ++n;
+      if (n == rows.near_begin(j + 1) || rows.near(n).column != node.place) continue;
+      block[std::size_t(n)].xx[4] += node.stiffness;
+      block[std::size_t(n)].yy[4] += node.stiffness;
+    }
+  }
 }
 
 }  // namespace
@@ -187,11 +192,14 @@ void SpecialRows<T>::list_fringe(int rows) {
 template <class T>
 void SpecialRows<T>::linearise_isotropic(const Membrane<T>& m) {
   std::ranges::fill(block_, BlockRow<T>{});
-  Linearisation<T> to(m, block_);
+  soft_.clear_blocks(*cells_);
+  add_springs(*this, block_);
+  Linearisation<T> to(m, block_, soft_);
   for (const FringeCell& cell : fringe_) to.fringe(cell);
   for_special(*cells_, [&](int n, int i, int j) {
     to.special(n, i, j, &tangent_[std::size_t(kEntries * n)]);
   });
+  soft_.invert_blocks(m.mu.value);
 }
 
 template <class T>
@@ -202,25 +210,26 @@ void special_isotropic_force(const Membrane<T>& m, const Unknowns<T>& f) {
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n)
       f.x.at(rows.near(n).column, j) = f.y.at(rows.near(n).column, j) = T(0);
   }
-  // `unknown`(corner): whether it is one of the near nodes' that have an equation.
-  auto visit = [&](int i, int j, const CellLaw<T>& law, auto&& unknown) {
-    return [&f, &law, unknown, i, j](const Point<T>& point, Share share, T shift) {
-      add_force(point, law.law(share).stress(law.state(point, share, shift)),
-                [&](int vertex, T x, T y) {
-                  if (vertex >= kFirstCrossing || !unknown(vertex)) return;
-                  f.x.at(i + (vertex & 1), j + (vertex >> 1)) += x;
-                  f.y.at(i + (vertex & 1), j + (vertex >> 1)) += y;
-                });
+  add_spring_force(rows.cells(), f);
+  // `add`(vertex, x, y): to the force on one of the cell's nodes.
+  auto visit = [](const CellLaw<T>& law, auto&& add) {
+    return [&law, add](const Point<T>& point, Share share, T shift) {
+      add_force(point, law.law(share).stress(law.state(point, share, shift)), add);
     };
   };
   for (const FringeCell& cell : rows.fringe()) {
     const CellLaw<T> law(m, cell.column, cell.row);
-    law.for_points(visit(cell.column, cell.row, law, [&cell](int c) { return cell.near[c] >= 0; }));
+    law.for_points(visit(law, [&](int c, T x, T y) {
+      if (cell.near[c] < 0) return;
+      f.x.at(cell.column + (c & 1), cell.row + (c >> 1)) += x;
+      f.y.at(cell.column + (c & 1), cell.row + (c >> 1)) += y;
+    }));
   }
   for_special(rows.cells(), [&](int n, int i, int j) {
     const CellLaw<T> law(m, i, j);
-    law.for_points(n,
-                   visit(i, j, law, [&rows, n](int c) { return rows.unknown_corner(n, c) >= 0; }));
+    law.for_points(n, visit(law, [&](int vertex, T x, T y) {
+                     add_vertex_force(f, rows, n, i, j, vertex, Vector2<T>{x, y});
+                   }));
   });
 }
 
@@ -235,6 +244,9 @@ void add_special_isotropic_energy(const Membrane<T>& m, const Unknowns<const T>&
       if (d.x && vertex < kFirstCrossing) {
         u.x += step * d.x.at(i + (vertex & 1), j + (vertex >> 1));
         u.y += step * d.y.at(i + (vertex & 1), j + (vertex >> 1));
+      } else if (d.curve && vertex >= kFirstCrossing) {
+        u.x += step * d.curve[2 * (vertex - kFirstCrossing)];
+        u.y += step * d.curve[2 * (vertex - kFirstCrossing) + 1];
       }
       return u;
     };
@@ -258,6 +270,7 @@ void add_special_isotropic_energy(const Membrane<T>& m, const Unknowns<const T>&
     });
     sums.inverted_cells += inverted;
   }
+  add_spring_energy(*m.special, d, step, sums, j);
 }
 
 template <class T>
@@ -280,7 +293,7 @@ void overwrite_block_row(const SpecialRows<T>& rows, const Unknowns<const T>& d,
   clear_known_row(rows, out, j);
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
     const int i = rows.near(n).column;
-    const Vector2<T> image = block_times(rows.block(n), d, i, j);
+    const Vector2<T> image = block_times(rows, n, d, i, j);
     out.x.at(i, j) = image.x;
     out.y.at(i, j) = image.y;
   }
@@ -318,7 +331,7 @@ void relax_block_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
   const SpecialRows<T>& rows = *m.special;
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
     const int i = rows.near(n).column;
-    const Vector2<T> image = block_times<T>(rows.block(n), d, i, j);
+    const Vector2<T> image = block_times<T>(rows, n, d, i, j);
     const T x = f.x.at(i, j) - image.x, y = f.y.at(i, j) - image.y;
     const T xy = m.inverse_block[1].at(i, j);
     d.x.at(i, j) += m.inverse_block[0].at(i, j) * x + xy * y;

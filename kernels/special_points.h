@@ -70,6 +70,46 @@ Point<T> point_of(T h, T s, T t) {
   return point;
 }
 
+/// The ten entries of a tangent on (a, b) as ∂²Ψ/∂F², F11 F21 F12 F22.
+template <class T>
+struct Stiffness {
+  T at[4][4];
+  explicit Stiffness(const T* entries) {
+    constexpr int kIndex[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    // a₁ = F11 + F22, a₂ = F21 − F12, b₁ = F11 − F22, b₂ = F21 + F12, all over √2
+    constexpr int kOne[4] = {0, 1, 3, 0}, kOther[4] = {2, 3, 1, 2};
+    constexpr T kSign[4] = {T(1), T(1), T(-1), T(-1)};
+    for (int p = 0; p < 4; ++p)
+      for (int q = 0; q < 4; ++q) {
+        auto entry = [&](int u, int v) { return entries[kIndex[u][v]]; };
+        at[p][q] = T(0.5) *
+                   ((entry(kOne[p], kOne[q]) + kSign[p] * kSign[q] * entry(kOther[p], kOther[q])) +
+                    (kSign[q] * entry(kOne[p], kOther[q]) + kSign[p] * entry(kOther[p], kOne[q])));
+      }
+  }
+};
+
+/// ∂²/∂x̂_a∂x̂_b of a point's energy for one a of its nodes.
+template <class T>
+class PointRow {
+ public:
+  PointRow(const Stiffness<T>& k, const Point<T>& point, std::size_t a) {
+    const T x = point.weight * point.gx[a], y = point.weight * point.gy[a];
+    for (int p = 0; p < 4; ++p) {
+      along_[p][0] = x * k.at[p][0] + y * k.at[p][2];
+      along_[p][1] = x * k.at[p][1] + y * k.at[p][3];
+    }
+  }
+  NodeBlock<T> block(const Point<T>& point, std::size_t b) const {
+    const T gx = point.gx[b], gy = point.gy[b];
+    return {along_[0][0] * gx + along_[2][0] * gy, along_[1][0] * gx + along_[3][0] * gy,
+            along_[0][1] * gx + along_[2][1] * gy, along_[1][1] * gx + along_[3][1] * gy};
+  }
+
+ private:
+  T along_[4][2];  ///< of F, for the node's x and y
+};
+
 constexpr double kGauss[2] = {0.21132486540518711775, 0.78867513459481288225};
 
 /// The law at points of cell (i, j).

@@ -43,10 +43,6 @@ std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& 
   if (model == kernels::Model::fold_free)
     return "curve method conforming: must be averaged for model " +
            std::string(kernels::name(model));
-  for (const grid::CurvePair& curve : problem.curves)
-    if (kernels::isotropic(model) && !std::isinf(curve.weight))
-      return "curve '" + curve.name + "': weight = " + std::to_string(curve.weight) +
-             ": must be inf with conforming curves and model " + std::string(kernels::name(model));
   if (options.exact) return "exact rows belong to averaged curves, not to conforming ones";
   if (options.solver != Solver::gcr)
     return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";

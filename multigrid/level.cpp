@@ -154,7 +154,7 @@ void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   d.listed.assign(pressure ? conforming->pressure.size() : 0, T(0));
   d.curve.assign(conforming->curve_unknowns(), T(0));
   f.listed = d.listed;
-  f.curve = d.curve;
+  f.curve = solid.product.curve = d.curve;
   if (solid.law.relief > T(0)) conforming->shift.assign(conforming->cells.triangle.size(), T(0));
   set_held<T>(*conforming, ux.view(), uy.view());
   meter.add(conforming->bytes());

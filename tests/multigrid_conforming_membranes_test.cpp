@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The isotropic membranes on conforming cells against the assembled oracle: energy, force, Hessian
-// with and without its negative eigenvalues, relaxation, corner pressures; the same bits on every
-// instruction set; and the convergence of cycles.
+// The isotropic membranes on conforming cells, along hard and soft curves, against the assembled
+// oracle: energy, force, Hessian with and without its negative eigenvalues, relaxation, corner
+// pressures; the same bits on every instruction set; and the convergence of cycles.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -20,7 +20,7 @@
 namespace drumhead {
 namespace {
 
-using conforming_scene::kNx, conforming_scene::kNy;
+using conforming_scene::kNx, conforming_scene::kNy, conforming_scene::Weights;
 using Eigen::VectorXd;
 using kernels::Model;
 
@@ -44,15 +44,15 @@ struct Sample {
   oracle::ConformingMembrane membrane;
   oracle::SolidLaw law;
 
-  Sample(Model model, double noise, double kappa = kKappa)
+  Sample(Model model, double noise, double kappa = kKappa, Weights weights = {})
       : hierarchy(lattice, {.mu = 1.0, .kappa = kappa, .model = model}, grid::cut({}, lattice, 1e6),
                   {.pressure = false, .model = model}, meter),
         level(hierarchy[0]),
-        membrane(oracle::conforming_membrane(conforming_scene::curves({}), lattice,
+        membrane(oracle::conforming_membrane(conforming_scene::curves(weights), lattice,
                                              std::vector<double>(kNx * kNy, kappa),
                                              {.least_area = 0.0})),
         law{std::string(name(model)), kappa, 0.2} {
-    hierarchy.conform(conforming_scene::curves({}), lattice, meter);
+    hierarchy.conform(conforming_scene::curves(weights), lattice, meter);
     std::mt19937 bits(7);
     std::uniform_real_distribution<double> number(-noise, noise);
     for_interior([&](int i, int j) {
@@ -61,6 +61,9 @@ struct Sample {
       level.ux.view().at(i, j) = share * (0.6 + x * 0.4 / 2.6) + number(bits);
       level.uy.view().at(i, j) = share * (0.2 - y * 0.4 / 2.6) + number(bits);
     });
+    for (auto* nodes : {&level.conforming->cells.held, &level.conforming->cells.crossing})
+      for (kernels::HeldNode<double>& node : *nodes)
+        if (!node.known()) node.off_x = number(bits), node.off_y = number(bits);
     multigrid::set_held<double>(*level.conforming, level.ux.view(), level.uy.view());
     level.clamp_width = kNoClamp;
     if (model == Model::neohookean) level.solid.law.eps = 1e-3;
@@ -78,10 +81,21 @@ struct Sample {
       if (n >= 0) visit(n, i, j);
     });
   }
+  /// visit(number, node) for every curve node of a soft curve.
+  template <class F>
+  void for_soft(F&& visit) const {
+    const std::size_t lattice_nodes = (kNx + 1) * (kNy + 1);
+    for (std::size_t n = lattice_nodes; n < membrane.unknown.size(); ++n)
+      if (membrane.unknown[n] >= 0) visit(membrane.unknown[n], int(n - lattice_nodes));
+  }
   oracle::Positions positions() const {
     oracle::Positions x = membrane.rest;
     for (Eigen::Index n = 0; n < x.rows(); ++n)
       if (membrane.known[std::size_t(n)]) x.row(n) = membrane.target.row(n);
+    for_soft([&](int, int c) {
+      const kernels::HeldNode<double>& node = level.conforming->cells.crossing[std::size_t(c)];
+      x.row((kNx + 1) * (kNy + 1) + c) += Eigen::RowVector2d(node.ux(), node.uy());
+    });
     for_unknown([&](int, int i, int j) {
       x(j * (kNx + 1) + i, 0) += level.ux.view().at(i, j);
       x(j * (kNx + 1) + i, 1) += level.uy.view().at(i, j);
@@ -94,12 +108,20 @@ struct Sample {
       out[n] = v.x.at(i, j);
       out[membrane.unknowns + n] = v.y.at(i, j);
     });
+    for_soft([&](int n, int c) {
+      out[n] = v.curve[2 * c];
+      out[membrane.unknowns + n] = v.curve[2 * c + 1];
+    });
     return out;
   }
   void scatter(const VectorXd& from, const kernels::Unknowns<double>& v) const {
     for_unknown([&](int n, int i, int j) {
       v.x.at(i, j) = from[n];
       v.y.at(i, j) = from[membrane.unknowns + n];
+    });
+    for_soft([&](int n, int c) {
+      v.curve[2 * c] = from[n];
+      v.curve[2 * c + 1] = from[membrane.unknowns + n];
     });
   }
   /// x̂ + d
@@ -108,11 +130,13 @@ struct Sample {
       level.ux.view().at(i, j) += level.d.view().x.at(i, j);
       level.uy.view().at(i, j) += level.d.view().y.at(i, j);
     });
+    multigrid::move_held<double>(*level.conforming, level.d.view(), 1.0, level.ux.view(),
+                                 level.uy.view());
   }
   double energy(double step) const {
     const kernels::EnergySums sums =
         kernels::energy<double>(level.membrane(), level.d.view(), step);
-    return sums.elastic + sums.volume;
+    return sums.elastic + sums.volume + sums.constraint;
   }
   VectorXd force() {
     kernels::force<double>(level.membrane(), level.f.view());
@@ -126,16 +150,19 @@ struct Sample {
   }
 };
 
-/// body(sample) for every model, at a state close to rest and at one with folds.
+/// body(sample) for every model and hard and soft curves, at a state close to rest and at one with
+/// folds.
 template <class F>
 void for_samples(F&& body) {
   for (const Model model : models())
-    for (const double noise : {0.02, 0.4}) {
-      if (model == Model::neohookean && noise > 0.1) continue;  // J > 0 everywhere
-      SCOPED_TRACE(std::string(name(model)) + ", noise " + std::to_string(noise));
-      Sample sample(model, noise);
-      body(sample);
-    }
+    for (const double noise : {0.02, 0.4})
+      for (const Weights& weights : conforming_scene::kWeights) {
+        if (model == Model::neohookean && noise > 0.1) continue;  // J > 0 everywhere
+        SCOPED_TRACE(std::string(name(model)) + ", noise " + std::to_string(noise) +
+                     ", weight of the circle " + std::to_string(weights.circle));
+        Sample sample(model, noise, kKappa, weights);
+        body(sample);
+      }
 }
 
 TEST(ConformingMembranes, EnergyAndForceAreTheOracles) {
@@ -236,7 +263,8 @@ TEST(ConformingMembranes, FoldsOfSpecialCellsAreSeen) {
   EXPECT_GT(of_triangles, 10);
 }
 
-/// Two steps of Chebyshev iteration with the diagonal's blocks, then Gauss–Seidel on near nodes.
+/// Two steps of Chebyshev iteration with the diagonal's blocks on lattice nodes, then Gauss–Seidel
+/// on near nodes and curve nodes.
 VectorXd relaxed(const Sample& sample, const Eigen::MatrixXd& matrix, const VectorXd& f,
                  double largest) {
   const Eigen::Index half = sample.membrane.unknowns;
@@ -250,21 +278,26 @@ VectorXd relaxed(const Sample& sample, const Eigen::MatrixXd& matrix, const Vect
   for (const double side : {1.0, -1.0}) {
     const double omega = 1.0 / (largest * (0.625 + side * 0.375 * std::sqrt(0.5)));
     const VectorXd r = f - matrix * d;
-    for (Eigen::Index n = 0; n < half; ++n) {
+    sample.for_unknown([&](int n, int, int) {
       const Eigen::Vector2d step = omega * solve(n, r);
       d[n] += step[0];
       d[half + n] += step[1];
-    }
+    });
   }
   const kernels::SpecialRows<double>& rows = sample.level.conforming->rows;
-  for (const int odd : {1, 0})
-    for (int j = 2 - odd; j < kNy; j += 2)
-      for (int k = rows.near_begin(j); k < rows.near_begin(j + 1); ++k) {
-        const int n = sample.membrane.unknown[std::size_t(j * (kNx + 1) + rows.near(k).column)];
-        const Eigen::Vector2d step = solve(n, f - matrix * d);
-        d[n] += step[0];
-        d[half + n] += step[1];
-      }
+  auto relax = [&](Eigen::Index n) {
+    const Eigen::Vector2d step = solve(n, f - matrix * d);
+    d[n] += step[0];
+    d[half + n] += step[1];
+  };
+  for (const int first : {1, 0})
+    for (int j = first; j < kNy; j += 2) {
+      for (int k = rows.near_begin(j); k < rows.near_begin(j + 1); ++k)
+        relax(sample.membrane.unknown[std::size_t(j * (kNx + 1) + rows.near(k).column)]);
+      sample.for_soft([&](int n, int c) {
+        if (sample.level.conforming->cells.crossing[std::size_t(c)].place == j) relax(n);
+      });
+    }
   return d;
 }
 
@@ -296,18 +329,19 @@ TEST(ConformingMembranes, RelaxationIsThatOfTheAssembledMatrix) {
 }
 
 TEST(ConformingMembranes, CyclesConverge) {
-  for (const Model model : models()) {
-    Sample sample(model, 0.02);
-    multigrid::Level<double>& level = sample.level;
-    sample.force();
-    const double before = std::sqrt(kernels::dot<double>(level.f.view(), level.f.view()));
-    level.clamp_width = 1.0;
-    multigrid::Cycle<double> cycle(sample.hierarchy, 0, true, 1.0);
-    for (int n = 0; n < 6; ++n) cycle.run(multigrid::CycleKind::v, n == 0);
-    const double left =
-        std::sqrt(kernels::residual_norm2<double>(cycle.system(0), sample.hierarchy.scratch()));
-    EXPECT_LT(left, std::pow(0.35, 6) * before) << name(model) << ": " << left / before;
-  }
+  for (const Model model : models())
+    for (const Weights& weights : conforming_scene::kWeights) {
+      Sample sample(model, 0.02, kKappa, weights);
+      multigrid::Level<double>& level = sample.level;
+      const double before = sample.force().norm();
+      level.clamp_width = 1.0;
+      multigrid::Cycle<double> cycle(sample.hierarchy, 0, true, 1.0);
+      for (int n = 0; n < 6; ++n) cycle.run(multigrid::CycleKind::v, n == 0);
+      const double left =
+          std::sqrt(kernels::residual_norm2<double>(cycle.system(0), sample.hierarchy.scratch()));
+      EXPECT_LT(left, std::pow(0.35, 6) * before)
+          << name(model) << ", circle " << weights.circle << ": " << left / before;
+    }
 }
 
 TEST(ConformingMembranes, EveryInstructionSetHasTheSameBits) {
@@ -316,7 +350,8 @@ TEST(ConformingMembranes, EveryInstructionSetHasTheSameBits) {
     VectorXd first;
     for (const kernels::Isa isa : kernels::available_isas()) {
       kernels::use_isa(isa);
-      Sample sample(model, 0.1, 100.0);  // arap: with corner pressures
+      // arap: with corner pressures
+      Sample sample(model, 0.1, 100.0, conforming_scene::kWeights[1]);
       multigrid::Level<double>& level = sample.level;
       std::ranges::fill(level.conforming->shift, -0.05);
       level.solid.law.onset = 0.1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The study scenes with the membranes of model.h, and how they are solved.
+#include <limits>
 #include <ostream>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct MembraneCase {
   Scene scene;
   kernels::Model model;
   double kappa = 1.0;
+  double weight = std::numeric_limits<double>::infinity();  // of all curves
 };
 inline void PrintTo(const MembraneCase& c, std::ostream* out) { *out << c.name; }
 inline const auto case_name = [](const auto& info) { return info.param.name; };
@@ -48,13 +50,31 @@ inline std::vector<MembraneCase> one_sided_membranes() {
           {"S4eq8", s4, Model::arap, 1e4}};
 }
 
+/// Along soft curves of every weight.
+inline std::vector<MembraneCase> soft_membranes() {
+  using kernels::Model;
+  return {{"S2corotatedSoft1", s2, Model::corotated, 1.0, 1.0},
+          {"S2corotatedSoft1e6", s2, Model::corotated, 10.0, 1e6},
+          {"S4linearSoft100", s4, Model::linear, 1.0, 100.0},
+          {"S2neohookeanSoft100", s2, Model::neohookean, 10.0, 100.0},
+          {"S4neohookeanSoft1e4", s4, Model::neohookean, 1.0, 1e4},
+          {"S4arapSoft1", s4, Model::arap, 1.0, 1.0},
+          {"S2arapSoft1e4", s2, Model::arap, 1.0, 1e4},
+          {"S2eq8Soft100", s2, Model::arap, 1e4, 100.0}};
+}
+
+inline multigrid::WarpProblem problem_of(const MembraneCase& c, int n) {
+  multigrid::WarpProblem membrane = problem(c.scene, n, c.kappa);
+  membrane.material.model = c.model;
+  for (grid::CurvePair& curve : membrane.curves) curve.weight = c.weight;
+  return membrane;
+}
+
 /// The case on n × n cells, to `tolerance_cells` (0: the default error).
 inline multigrid::Solution solved(const MembraneCase& c, int n, double tolerance_cells,
                                   multigrid::SolverOptions options) {
-  multigrid::WarpProblem membrane = problem(c.scene, n, c.kappa);
-  membrane.material.model = c.model;
   options.tolerance_px = tolerance_cells / n;
-  return multigrid::solve(membrane, options);
+  return multigrid::solve(problem_of(c, n), options);
 }
 
 }  // namespace drumhead::scenes

@@ -36,6 +36,7 @@ class Assembly {
              ++p)
           add_part(c, p, j);
       }
+    add_springs();
     system_.hessian.resize(2 * m.unknowns, 2 * m.unknowns);
     system_.hessian.setFromTriplets(entries_.begin(), entries_.end());
   }
@@ -54,6 +55,21 @@ class Assembly {
       for (const double s : {0.5 - g, 0.5 + g}) add(at(s, t), 0.25, law_.model, 1.0, law_.kappa);
     for (int n = 0; n < 4 && law_.model == "arap"; ++n)
       add(at(n % 2, n / 2), 0.25, "one_sided", 1.0, law_.kappa);
+  }
+
+  void add_springs() {
+    for (std::size_t n = 0; n < m_.unknown.size(); ++n) {
+      const double s = m_.spring[Eigen::Index(n)];
+      const int u = m_.unknown[n];
+      if (u < 0 || s == 0.0) continue;
+      const Eigen::RowVector2d off = x_.row(Eigen::Index(n)) - m_.target.row(Eigen::Index(n));
+      system_.energy += 0.5 * s * off.squaredNorm();
+      for (const int axis : {0, 1}) {
+        const int row = u + axis * m_.unknowns;
+        system_.gradient[row] += s * off[axis];
+        entries_.emplace_back(row, row, s);
+      }
+    }
   }
 
   void add_part(int c, int p, int j) {

@@ -3,7 +3,8 @@
 // The isotropic membranes on conforming cells, assembled from their textbook tensors
 // (oracle_membrane.h): regular cells by 2×2 Gauss points, triangles with the part of the density
 // that has mu, parts with the one that has kappa at the mean of their triangles' F, arap's
-// one-sided part at the corners of regular cells and in every triangle.
+// one-sided part at the corners of regular cells and in every triangle; and the springs of soft
+// curves.
 #include <string>
 
 #include "oracle_conforming.h"

@@ -5,7 +5,8 @@
 // row: that of the lattice edge it lies on, or of the cell row above if between two. Like a node of
 // the lattice it sees nodes and curve nodes of its own row and the two beside it. What rows of
 // lattice nodes and parts have of curve nodes is kept here too, so that scenes whose curves are all
-// hard store and read nothing of it.
+// hard store and read nothing of it. Isotropic membranes have 2×2 blocks beside the couplings,
+// which are then between all vertices of a part.
 #include <vector>
 
 #include <drumhead/kernels/views.h>
@@ -20,6 +21,11 @@ template <class T>
 struct NodeCoupling {
   int column = 0, row = 0;  ///< of a lattice node; row < 0: curve node `column`
   T k = T(0), g = T(0);
+};
+/// The same of isotropic membranes: (H d)_x = xx d_x + xy d_y, (H d)_y = yx d_x + yy d_y.
+template <class T>
+struct NodeBlock {
+  T xx = T(0), xy = T(0), yx = T(0), yy = T(0);
 };
 /// Of a curve node and a part, or the other way round.
 template <class T>
@@ -60,6 +66,20 @@ class SoftRows {
   /// The same for the row of part p.
   int area_begin(int p) const { return area_begin_[std::size_t(p)]; }
   const AreaCoupling<T>& of_part(int k) const { return of_part_[std::size_t(k)]; }
+
+  // Of isotropic membranes: blocks of couplings, of the nodes themselves and those' inverses.
+  const NodeBlock<T>& node_block(int k) const { return node_block_[std::size_t(k)]; }
+  const NodeBlock<T>& of_near_block(int k) const { return of_near_block_[std::size_t(k)]; }
+  const NodeBlock<T>& own_block(int n) const { return own_block_[std::size_t(n)]; }
+  const NodeBlock<T>& inverse_block(int n) const { return inverse_block_[std::size_t(n)]; }
+  /// All of them := 0, or the stiffness of the nodes' springs.
+  void clear_blocks(const SpecialCells<T>& cells);
+  /// That of a soft curve node and the node (column, row) as couplings name it; null: known.
+  NodeBlock<T>* find_block(int curve_node, int column, int row);
+  /// That of near node n and a soft curve node.
+  NodeBlock<T>& find_block_of_near(int n, int curve_node);
+  /// (own block + 1e-4 mu)⁻¹, as blocks.h has those of lattice nodes.
+  void invert_blocks(T mu);
   std::size_t bytes() const;
 
  private:
@@ -68,6 +88,7 @@ class SoftRows {
   std::vector<Row> row_;        // one more than there are
   std::vector<NodeCoupling<T>> node_, of_near_;
   std::vector<AreaCoupling<T>> part_, of_part_;
+  std::vector<NodeBlock<T>> node_block_, of_near_block_, own_block_, inverse_block_;
   std::vector<int> near_begin_, area_begin_;
 };
 
