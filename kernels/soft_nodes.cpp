@@ -84,22 +84,27 @@ void for_part_vertices(const SpecialCells<T>& cells, int cell, F&& visit) {
 }  // namespace
 
 template <class T>
-SoftRows<T>::SoftRows(const SpecialRows<T>& rows, const Membrane<T>& membrane) {
-  const SpecialCells<T>& cells = rows.cells();
+void SoftRows<T>::list_nodes(const SpecialCells<T>& cells, int rows) {
   for (std::size_t c = 0; c < cells.crossing.size(); ++c)
     if (!cells.crossing[c].known()) row_.push_back({.node = int(c)});
   if (row_.empty()) return;
   auto place = [&](const Row& row) { return cells.crossing[std::size_t(row.node)].place; };
   std::ranges::stable_sort(row_, {}, place);
   index_.assign(cells.crossing.size(), -1);
-  row_begin_.assign(std::size_t(membrane.ux.rows) + 1, 0);
+  row_begin_.assign(std::size_t(rows) + 1, 0);
   for (std::size_t n = 0; n < row_.size(); ++n) {
     index_[std::size_t(row_[n].node)] = int(n);
     row_[n].diagonal = cells.crossing[std::size_t(row_[n].node)].stiffness;
     ++row_begin_[std::size_t(place(row_[n])) + 1];
   }
   for (std::size_t j = 1; j < row_begin_.size(); ++j) row_begin_[j] += row_begin_[j - 1];
+}
 
+template <class T>
+SoftRows<T>::SoftRows(const SpecialRows<T>& rows, const Membrane<T>& membrane) {
+  const SpecialCells<T>& cells = rows.cells();
+  list_nodes(cells, membrane.ux.rows);
+  if (row_.empty()) return;
   Lists<NodeCoupling<T>> node(row_.size()), of_near(std::size_t(rows.near_begin(membrane.ux.rows)));
   Lists<AreaCoupling<T>> part(row_.size()), of_part(std::size_t(cells.parts()));
   auto soft = [&](int vertex) {

@@ -16,13 +16,20 @@ constexpr std::array kNames{std::pair{CurveMethod::automatic, "auto"},
 // Isotropic membranes: kappa from which Newton's method on conforming cells often ends elsewhere
 // than in a solution (Eq. 8 as an inequality leaves one folded triangle of ML on 96²).
 constexpr double kMostStiffness = 300.0;
+// Soft curves, crpm: kappa from which stiff ones leave each linear system to GCR (S2 on 400²,
+// weights 1e4, 1e5, 1e6, hard: 47, 74, 61, 40 cycles at kappa 100, 131, 1036, 102, 39 at 300; at
+// 1e4 with 1e6 none converges).
+constexpr double kMostSoftStiffness = 200.0;
 
 /// Where conforming cells are expected to converge. Not with stvk: what its cells do after their
 /// collapse takes more Newton steps than there are (S1 and S4, kappa 1, 128²).
-bool settles(const grid::Material& material) {
-  if (!kernels::isotropic(material.model)) return true;
-  return material.model != kernels::Model::stvk &&
-         grid::largest_stiffness(material) <= kMostStiffness;
+bool settles(const WarpProblem& problem) {
+  const grid::Material& material = problem.material;
+  const double stiffness = grid::largest_stiffness(material);
+  const auto soft = [](const grid::CurvePair& curve) { return !std::isinf(curve.weight); };
+  if (!kernels::isotropic(material.model))
+    return stiffness <= kMostSoftStiffness || std::ranges::none_of(problem.curves, soft);
+  return material.model != kernels::Model::stvk && stiffness <= kMostStiffness;
 }
 
 }  // namespace
@@ -56,9 +63,7 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;
   }
-  const auto soft = [](const grid::CurvePair& curve) { return !std::isinf(curve.weight); };
-  if (!why_not.empty() || !settles(problem.material) || std::ranges::any_of(problem.curves, soft))
-    return CurveMethod::averaged;
+  if (!why_not.empty() || !settles(problem)) return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

@@ -83,6 +83,8 @@ class SoftRows {
   std::size_t bytes() const;
 
  private:
+  void list_nodes(const SpecialCells<T>& cells, int rows);
+
   std::vector<int> index_;      // of every curve node among the soft ones, −1: known
   std::vector<int> row_begin_;  // ny + 2
   std::vector<Row> row_;        // one more than there are
