@@ -22,6 +22,19 @@ template <class T>
   }
   if (count & 1) out[count - 1] = even[pairs];
 }
+/// The mean of two rows.
+template <class T>
+[[gnu::flatten]] void join_mean_row(const SplitRow<const T>& a, const SplitRow<const T>& b,
+                                    int begin, int count, T* out) {
+  const T *a_even = a.half[0] + begin / 2, *a_odd = a.half[1] + begin / 2;
+  const T *b_even = b.half[0] + begin / 2, *b_odd = b.half[1] + begin / 2;
+  const int pairs = count / 2;
+  for (int k = 0; k < pairs; ++k) {
+    out[2 * k] = T(0.5) * (a_even[k] + b_even[k]);
+    out[2 * k + 1] = T(0.5) * (a_odd[k] + b_odd[k]);
+  }
+  if (count & 1) out[count - 1] = T(0.5) * (a_even[pairs] + b_even[pairs]);
+}
 template <class T>
 [[gnu::flatten]] void split_row(const T* in, int begin, int count, const SplitRow<T>& row) {
   T *even = row.half[0] + begin / 2, *odd = row.half[1] + begin / 2;
@@ -37,19 +50,15 @@ template <class T>
 /// alone.
 template <bool kAdd, class T>
 [[gnu::flatten]] void prolong_nodes_row(const Plane<const T>& coarse, const Plane<T>& fine, int j) {
-  T natural[kBuffer + 2], upper[kBuffer + 2];
+  T natural[kBuffer + 2];
   const int last = fine.columns - 2;  // last interior column
   for (int begin = 0; 2 * begin <= last; begin += kBuffer) {
     int count = coarse.columns - begin;
     if (count > kBuffer + 1) count = kBuffer + 1;
-    join_row<T>({{coarse.half(j / 2, 0), coarse.half(j / 2, 1)}}, begin, count, natural);
-    if (j & 1) {
-      join_row<T>({{coarse.half(j / 2 + 1, 0), coarse.half(j / 2 + 1, 1)}}, begin, count, upper);
-      for_lanes<T>(0, count, [&](auto lane, auto zero, int k) {
-        using B = decltype(zero);
-        lane.store(B(T(0.5)) * (lane.load(natural + k) + lane.load(upper + k)), natural + k);
-      });
-    }
+    if (j & 1)
+      join_mean_row<T>(coarse.row(j / 2), coarse.row(j / 2 + 1), begin, count, natural);
+    else
+      join_row<T>(coarse.row(j / 2), begin, count, natural);
     T *even = fine.half(j, 0) + begin, *odd = fine.half(j, 1) + begin;
     auto ends = [&](int parity) {
       const int all = half_count(last + 1, parity) - begin;

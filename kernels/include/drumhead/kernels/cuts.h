@@ -7,6 +7,9 @@
 // A right-hand side f of the nodes is said to *carry* the curve forces when it holds f + Wᵀ dq:
 // whoever changes dq then adds Wᵀ of the change to f, and the elastic kernels need not know of
 // curves.
+//
+// All fields of nodes that a function is given lie in memory alike: same stride, same distance of
+// the odd half.
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
