@@ -375,7 +375,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const bool directions = (!options.adaptive && length.slow(rms)) || judge.uneven();
     const double cosine = directions ? turn.cosine_with(d) : kUnknown;
     const double gap = volume_gap(level_, volume_squares_, stiffness_, options.most_volume_gap);
-    const bool ends = judge.ends_with(step, rms, shortened, precision(), gap, cosine);
+    const bool ends =
+        judge.ends_with(step, {rms, moves_.longest}, shortened, precision(), gap, cosine);
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;

@@ -10,6 +10,11 @@
 
 namespace drumhead::multigrid {
 
+/// What a step at full length moves the nodes by, in finest cells.
+struct FullMove {
+  double rms = 0.0, max = 0.0;
+};
+
 /// Files the steps of a run and decides when it ends.
 class Judge {
  public:
@@ -19,10 +24,10 @@ class Judge {
   Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
 
   /// True if the run ends with this step; the report then has its status. `shortened`: the merit
-  /// did not let it have the length that was tried; `move`: RMS of a full one. `rounding`: moves
-  /// below it are noise; `volume_gap`: see NewtonReport; `cosine`: between the moves of this step
-  /// and the one before, where uneven(), else not a number.
-  bool ends_with(const NewtonStep& step, double move, bool shortened, double rounding,
+  /// did not let it have the length that was tried. `rounding`: moves below it are noise;
+  /// `volume_gap`: see NewtonReport; `cosine`: between the moves of this step and the one before,
+  /// where uneven(), else not a number.
+  bool ends_with(const NewtonStep& step, const FullMove& move, bool shortened, double rounding,
                  double volume_gap, double cosine) {
     const double gap_before = report_.volume_gap;
     report_.volume_gap = volume_gap;
@@ -47,9 +52,10 @@ class Judge {
     const bool gcr = options_.linear.solver == Solver::gcr;
     const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
     unsolved_ = solved ? 0 : unsolved_ + 1;
-    tiny_ = shortened && solved && kTiny * move <= wanted(rounding) ? tiny_ + 1 : 0;
+    tiny_ = shortened && solved && kTiny * move.rms <= wanted(rounding) ? tiny_ + 1 : 0;
     if (tiny_ >= kMostTiny && areas_done()) {
-      report_.error_rms = kTiny * move;
+      report_.error_rms = kTiny * move.rms;
+      report_.error_max = kTiny * move.max;
       return end(Status::converged);
     }
     if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
