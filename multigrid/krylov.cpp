@@ -194,7 +194,11 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
   const bool exact = hierarchy.traits().jump == 0.0 && level.cuts.size() > 0;
   const bool strip = exact && level.nodes() >= kStripNodes;
   if (exact && !strip) cycle.relax_patches(meter);
-  const NewtonSystem<T> system(hierarchy, top, pressure, meter);
+  const bool as_cycle = cycle.system(top).membrane.clamp_width == level.clamp_width &&
+                        !kernels::isotropic(hierarchy.traits().model);
+  using Rows = typename NewtonSystem<T>::Rows;
+  const NewtonSystem<T> system(hierarchy, top, pressure, meter,
+                               as_cycle ? Rows::levels : Rows::own);
   return Gcr<T>(system, cycle, strip).solve(start, report, options);
 }
 

@@ -11,18 +11,18 @@ namespace drumhead::multigrid {
 
 template <class T>
 NewtonSystem<T>::NewtonSystem(Hierarchy<T>& hierarchy, int top, bool pressure,
-                              grid::MemoryMeter& meter)
+                              grid::MemoryMeter& meter, Rows rows)
     : hierarchy_(hierarchy), top_(top), pressure_(pressure), meter_(meter) {
-  if (!level().conforming) return;
+  if (!level().conforming || rows == Rows::levels) return;
   special_ = level().conforming->rows;
-  special_.linearise(membrane());
+  special_->linearise(membrane());
 }
 
 template <class T>
 kernels::Membrane<T> NewtonSystem<T>::membrane() const {
   kernels::Membrane<T> m = pressure_ ? level().membrane() : level().harmonic();
   m.pressure_jump = T(0);  // for levels below the one that is solved
-  if (level().conforming) m.special = &special_;
+  if (special_) m.special = &*special_;
   return m;
 }
 

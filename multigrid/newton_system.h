@@ -2,6 +2,8 @@
 #pragma once
 // The Newton system of one level as an operator on vectors, for the methods that work on the whole
 // of it at once.
+#include <optional>
+
 #include "hierarchy.h"
 
 namespace drumhead::multigrid {
@@ -16,8 +18,14 @@ struct Vector {
 template <class T>
 class NewtonSystem {
  public:
+  /// Whose linearisation of the special cells it takes.
+  enum class Rows {
+    own,     ///< its own, at the level's clamp
+    levels,  ///< the level's, which a cycle has linearised at the same clamp
+  };
   /// Of level `top` at its state; `pressure` false: the harmonic system, kappa = 0.
-  NewtonSystem(Hierarchy<T>& hierarchy, int top, bool pressure, grid::MemoryMeter& meter);
+  NewtonSystem(Hierarchy<T>& hierarchy, int top, bool pressure, grid::MemoryMeter& meter,
+               Rows rows = Rows::own);
 
   Hierarchy<T>& hierarchy() const { return hierarchy_; }
   Level<T>& level() const { return hierarchy_[top_]; }
@@ -55,8 +63,8 @@ class NewtonSystem {
   int top_;
   bool pressure_;
   grid::MemoryMeter& meter_;
-  /// At the level's own clamp, where its lattice conforms to curves: cycles have them with theirs.
-  kernels::SpecialRows<T> special_;
+  /// Where the lattice conforms to curves and cycles have another clamp.
+  std::optional<kernels::SpecialRows<T>> special_;
 };
 
 }  // namespace drumhead::multigrid
