@@ -54,8 +54,7 @@ class Judge {
     unsolved_ = solved ? 0 : unsolved_ + 1;
     tiny_ = shortened && solved && kTiny * move.rms <= wanted(rounding) ? tiny_ + 1 : 0;
     if (tiny_ >= kMostTiny && areas_done()) {
-      report_.error_rms = kTiny * move.rms;
-      report_.error_max = kTiny * move.max;
+      set_error(kTiny, move);
       return end(Status::converged);
     }
     if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
@@ -67,8 +66,7 @@ class Judge {
     const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
     const bool rounded = seen && no_nearer(step, before, rounding);
     const double left = rounded ? 1.0 : std::max(rate, step.residual) / (1.0 - rate);
-    report_.error_rms = left * step.dx_rms_px;
-    report_.error_max = left * step.dx_max_px;
+    set_error(left, {step.dx_rms_px, step.dx_max_px});
     if (uneven_ && step.step > 0.0 && before.step > 0.0 && cosine < kAstray) {
       report_.error_rms = kWandering * mean_move(step.dx_rms_px, step, before.dx_rms_px, before);
       report_.error_max = kWandering * mean_move(step.dx_max_px, step, before.dx_max_px, before);
@@ -183,6 +181,10 @@ class Judge {
     if (last > 0.0 && last < first && report_.error_rms < first)
       share_ = std::max(share_, std::min(kMostShare, std::log(first / report_.error_rms) /
                                                          std::log(first / last)));
+  }
+  void set_error(double moves, const FullMove& move) {
+    report_.error_rms = moves * move.rms;
+    report_.error_max = moves * move.max;
   }
   bool end(Status status) {
     report_.status = status;
