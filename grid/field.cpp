@@ -65,6 +65,14 @@ void Memory::Release::operator()(std::byte* data) const {
     ::operator delete(data, std::align_val_t(kAlignment));
 }
 
+void prefer_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  const auto begin = reinterpret_cast<std::uintptr_t>(data);
+  const std::uintptr_t from = in_huge_pages(begin), to = (begin + bytes) / kHugePage * kHugePage;
+  if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
+#endif
+}
+
 template <class T>
 kernels::Plane<T> Field<T>::shape(int columns, int rows) {
   constexpr int per_line = int(kAlignment / sizeof(T));

@@ -79,10 +79,12 @@ template <class T>
 double Newton<T>::median_pressure() const {
   const kernels::Plane<const T> p = level_.pressure.view();
   const std::size_t cells = std::size_t(p.columns) * std::size_t(p.rows);
-  const std::size_t stride = cells / kMedianSamples + 1;
+  const int stride = int(cells / kMedianSamples + 1);
   std::vector<T> sample;
-  for (std::size_t c = stride / 2; c < cells; c += stride)
-    sample.push_back(p.at(int(c % std::size_t(p.columns)), int(c / std::size_t(p.columns))));
+  for (int i = stride / 2, j = 0; j < p.rows; i += stride) {
+    for (; i >= p.columns && j < p.rows; i -= p.columns) ++j;
+    if (j < p.rows) sample.push_back(p.at(i, j));
+  }
   const auto middle = sample.begin() + std::ptrdiff_t(sample.size() / 2);
   std::ranges::nth_element(sample, middle);
   return double(*middle);

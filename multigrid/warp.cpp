@@ -76,7 +76,9 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
 /// Appends the rows of a plane, `scale` times.
 template <class T>
 void append(const kernels::Plane<const T>& plane, double scale, std::vector<double>& values) {
-  values.reserve(std::size_t(plane.columns) * std::size_t(plane.rows));
+  const std::size_t count = std::size_t(plane.columns) * std::size_t(plane.rows);
+  values.reserve(count);
+  grid::prefer_huge_pages(values.data(), count * sizeof(double));
   std::vector<double> row(std::size_t(plane.columns));
   for (int j = 0; j < plane.rows; ++j) {
     for (int parity = 0; parity < 2; ++parity) {

@@ -2,6 +2,7 @@
 // Fields that own their memory.
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -138,6 +139,16 @@ TYPED_TEST(GridField, LargeOnesBeginAtZeroEverywhereToo) {
     EXPECT_EQ(wrong, 0u) << "field " << n;
   }
   EXPECT_EQ(meter.current(), 0u);
+}
+
+TYPED_TEST(GridField, HugePagesForOtherArraysChangeNoValue) {
+  std::vector<TypeParam> values(2000000, TypeParam(3));
+  for (const std::size_t begin : {0, 1, 1000}) {
+    prefer_huge_pages(values.data() + begin, 0);
+    prefer_huge_pages(values.data() + begin, 100 * sizeof(TypeParam));
+    prefer_huge_pages(values.data() + begin, (values.size() - begin) * sizeof(TypeParam));
+  }
+  for (const TypeParam value : values) ASSERT_EQ(value, TypeParam(3));
 }
 
 TYPED_TEST(GridField, UnknownsHaveNodesAndCellsOfTheirLattice) {
