@@ -30,8 +30,6 @@ void all_models(Results& results) {
     for (const scenes::Scene& scene :
          {scenes::sponge(offset), scenes::roundabout(45.0, offset), scenes::shift(offset)})
       for (const CurveMethod method : kMethods) {
-        // It takes averaged curves only.
-        if (info.model == kernels::Model::fold_free && method == CurveMethod::conforming) continue;
         results.row("membranes", joined({{"model", std::string(info.name)},
                                          {"scene", scene.name},
                                          {"curves", multigrid::name(method)}},
@@ -86,7 +84,8 @@ void fold_free(Results& results, int n) {
       for (const auto& [model, curves] :
            {std::pair{kernels::Model::crpm, CurveMethod::averaged},
             std::pair{kernels::Model::fold_free, CurveMethod::averaged},
-            std::pair{kernels::Model::crpm, CurveMethod::conforming}}) {
+            std::pair{kernels::Model::crpm, CurveMethod::conforming},
+            std::pair{kernels::Model::fold_free, CurveMethod::conforming}}) {
         const multigrid::Solution solution = solved(scene, n, model, kappa, curves);
         Json row = joined({{"scene", scene.name},
                            {"kappa", kappa},

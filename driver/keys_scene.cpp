@@ -155,8 +155,8 @@ const std::array kKeys = {
         .bound = "one of: auto, averaged, conforming",
         .help = "averaged: curves are met on average in each cell, an error of first order in the "
                 "cell size; conforming: cells are divided along them, second order; "
-                "auto: conforming for all models but stvk and fold-free, those beside crpm up to "
-                "kappa/mu 300, crpm with a weight other than inf up to 200",
+                "auto: conforming for all models but stvk, those beside crpm up to kappa/mu 300, "
+                "crpm with a weight other than inf up to 200",
         .fallback = "auto",
         .set = set_curve_method},
     Key{.name = "exact",

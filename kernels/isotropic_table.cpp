@@ -9,18 +9,19 @@
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
-/// None for a model whose conforming cells are not there (fold-free).
 template <class Density, class T>
 constexpr PointLaw<T> point_law() {
-  if constexpr (requires(Parameters<T> c) { Density::template at<T>(c, T(0), T(0)); })
-    return {point_stress<Density, T>, point_tangent<Density, T>};
-  else
-    return {};
+  return {point_stress<Density, T>, point_tangent<Density, T>};
 }
 
 template <class Model, class T>
 constexpr IsotropicRows<T> isotropic_rows() {
-  PointLaw<T> corner;
+  PointLaw<T> point, corner;
+  constexpr bool centred = requires { typename Model::Centre; };
+  if constexpr (centred)
+    point = point_law<typename Model::Centre, T>();
+  else
+    point = point_law<Model, T>();
   if constexpr (requires { typename Model::Corner; })
     corner = point_law<typename Model::Corner, T>();
   return {isotropic_product_row<Model, T>,
@@ -28,8 +29,9 @@ constexpr IsotropicRows<T> isotropic_rows() {
           isotropic_diagonal_row<Model, T>,
           cell_tangent_row<Model, T>,
           isotropic_energy_row<Model, T>,
-          point_law<Model, T>(),
-          corner};
+          point,
+          corner,
+          centred};
 }
 
 template <class T>

@@ -22,8 +22,9 @@ struct PointStress {
 template <class T>
 struct PointLaw {
   PointStress<T> (*stress)(const PointState<T>&) = nullptr;
-  /// The ten entries of the tangent, its eigenvalues at least `floor`.
-  void (*tangent)(const PointState<T>&, T floor, T* entries) = nullptr;
+  /// The ten entries of the tangent, its eigenvalues raised as a clamp of this width leaves them in
+  /// a cell of stiffness `mu`.
+  void (*tangent)(const PointState<T>&, T mu, T width, T* entries) = nullptr;
 };
 
 /// One membrane (isotropic_body.h).
@@ -38,6 +39,9 @@ struct IsotropicRows {
   void (*energy)(const Membrane<T>&, const Unknowns<const T>& d, T step, const Columns& left_out,
                  EnergySums&, int j);
   PointLaw<T> point, corner;
+  /// `point` acts at a cell's centre, with a quarter of its area, and `corner` has all the rest;
+  /// else `point` acts at the Gauss points.
+  bool centred = false;
 };
 
 template <class T>

@@ -5,7 +5,8 @@
 // and the one-sided term of their Eq. 8 besides,
 //   Ψ = mu/2 |F|² + w/2 min(0, J − eps + s)²  at the corners: the first part is Eq. 6,
 //   Ψ = kappa/2 (J−1)²                        at the centre, with the weight of all four corners,
-// with w, s, eps and an onset as in model_arap.h. Any F.
+// with w, s, eps and an onset as in model_arap.h. In special cells (special_points.h) the first is
+// taken in every triangle, the second at the mean F of every part. Any F.
 #include "model_arap.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {

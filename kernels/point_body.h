@@ -25,12 +25,14 @@ PointStress<T> point_stress(const PointState<T>& at) {
 }
 
 template <class Density, class T>
-void point_tangent(const PointState<T>& at, T floor, T* entries) {
-  Tangent<T, T>(Density{}, split_of(at), parameters_of(at), LeastEigenvalue<T>{floor})
-      .entries(entries);
+void point_tangent(const PointState<T>& at, T mu, T width, T* entries) {
+  Parameters<T> cell = parameters_of(at);
+  cell.mu = mu;
+  const LeastEigenvalue<T> least{least_eigenvalue<T, Density>(cell, width)};
+  Tangent<T, T>(Density{}, split_of(at), parameters_of(at), least).entries(entries);
 }
 
-/// Of arap's one-sided term: kappa min(0, J − eps + shift), its corner rounded off.
+/// Of the one-sided term: kappa min(0, J − eps + shift), its corner rounded off.
 template <class T>
 T point_pressure(const PointState<T>& at) {
   const Parameters<T> c = parameters_of(at);

@@ -83,8 +83,8 @@ class Linearisation {
       evaluate(law, point, share, shift);
       add(point, near, i, j);
       for (int e = 0; e < kEntries; ++e) mean[e] += point.weight * entries_[e];
-      if (share == Share::shape) area += point.weight;
     });
+    for_parts(cells, n, [&](int p) { area += cells.area[std::size_t(p)]; });
     for (int e = 0; e < kEntries; ++e) mean[e] /= area;
   }
 
@@ -94,7 +94,7 @@ class Linearisation {
     if (soft_.size() > 0) add_curve_point(point, entries_, near, i, j, soft_);
   }
   void evaluate(const CellLaw<T>& law, const Point<T>& point, Share share, T shift) {
-    law.law(share).tangent(law.state(point, share, shift), law.least_eigenvalue(), entries_);
+    law.tangent(point, share, shift, entries_);
   }
   void read(int i, int j) {
     const int rows = m_.tangent.rows / kEntries;

@@ -30,6 +30,7 @@ struct Point {
 /// What of the density a point has. In special cells kappa acts on the mean of a part: RMS errors
 /// of S2 turned by 45° on 64², in px of a picture of 1000, at kappa 1, 10, 100: corotated .032 .046
 /// .068 (in every triangle: .038 .064 .087), neohookean .11 .26 1.3 (.16 .56 2.9).
+/// `corner`: arap's one-sided term; all of fold-free's density but the volume's.
 enum class Share { all, shape, volume, corner };
 
 template <class T>
@@ -119,29 +120,36 @@ class CellLaw {
   CellLaw(const Membrane<T>& m, int i, int j) : m_(m), rows_(isotropic_rows(m)), i_(i), j_(j) {
     mu_ = mu_at(m, i, j);
     kappa_ = m.law.kappa.cells ? m.law.kappa.cells.at(i, j) : m.law.kappa.value;
-    if (m.law.relief > T(0)) kappa_ /= kappa_ * (T(1) / m.law.relief) + T(1);
+    corner_ = m.law.corner > T(0) ? m.law.corner : kappa_;
+    if (m.law.relief > T(0)) corner_ /= corner_ * (T(1) / m.law.relief) + T(1);
   }
-  T least_eigenvalue() const { return (T(1) - m_.clamp_width) * mu_; }
 
   /// visit(point, share, shift of its corner) at all points of special cell n.
   template <class F>
   void for_points(int n, F&& visit) const {
     const SpecialCells<T>& cells = m_.special->cells();
-    const bool corners = has_corners();
     for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
          ++t) {
       const Point<T> point = point_of(cells.triangle[std::size_t(t)]);
-      visit(point, Share::shape, T(0));
-      if (corners) visit(point, Share::corner, m_.law.listed_shift ? m_.law.listed_shift[t] : T(0));
+      if (!rows_.centred) visit(point, Share::shape, T(0));
+      if (has_corners())
+        visit(point, Share::corner, m_.law.listed_shift ? m_.law.listed_shift[t] : T(0));
     }
-    if (!corners)
-      for_parts(cells, n, [&](int p) { visit(point_of(cells, p), Share::volume, T(0)); });
+    if (has_corners() && !rows_.centred) return;
+    for_parts(cells, n, [&](int p) {
+      Point<T> point = point_of(cells, p);
+      if (rows_.centred) point.weight *= T(0.25);
+      visit(point, Share::volume, T(0));
+    });
   }
   /// And of the regular cell.
   template <class F>
   void for_points(F&& visit) const {
-    for (const double t : kGauss)
-      for (const double s : kGauss) visit(point_of(m_.spacing, T(s), T(t)), Share::all, T(0));
+    if (rows_.centred)
+      visit(point_of(m_.spacing, T(0.5), T(0.5)), Share::volume, T(0));
+    else
+      for (const double t : kGauss)
+        for (const double s : kGauss) visit(point_of(m_.spacing, T(s), T(t)), Share::all, T(0));
     for (int n = 0; n < 4 && has_corners(); ++n)
       visit(point_of(m_.spacing, T(n & 1), T(n >> 1)), Share::corner,
             m_.law.shift[n] ? m_.law.shift[n].at(i_, j_) : T(0));
@@ -152,6 +160,7 @@ class CellLaw {
   PointState<T> state(const Point<T>& point, Share share, T shift, F&& displacement) const {
     PointState<T> at{T(1), T(0), T(0), T(1), mu_, kappa_, m_.law.eps, shift, m_.law.onset};
     if (share == Share::shape) at.kappa = T(0);
+    if (share == Share::corner) at.kappa = corner_;
     if (share == Share::volume) at.mu = T(0);
     T xx = T(0), yx = T(0), xy = T(0), yy = T(0);
     for (std::size_t a = 0; a < std::size_t(point.count); ++a) {
@@ -175,6 +184,10 @@ class CellLaw {
   const PointLaw<T>& law(Share share) const {
     return share == Share::corner ? rows_.corner : rows_.point;
   }
+  /// The ten entries of a point's tangent.
+  void tangent(const Point<T>& point, Share share, T shift, T* entries) const {
+    law(share).tangent(state(point, share, shift), mu_, m_.clamp_width, entries);
+  }
 
  private:
   bool has_corners() const { return rows_.corner.stress != nullptr; }
@@ -182,7 +195,7 @@ class CellLaw {
   const Membrane<T>& m_;
   const IsotropicRows<T>& rows_;
   int i_, j_;
-  T mu_, kappa_;
+  T mu_, kappa_, corner_;
 };
 
 }  // namespace drumhead::kernels

@@ -45,11 +45,7 @@ std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
   return found->first;
 }
 
-std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& options) {
-  const kernels::Model model = problem.material.model;
-  if (model == kernels::Model::fold_free)
-    return "curve method conforming: must be averaged for model " +
-           std::string(kernels::name(model));
+std::string why_not_conforming(const SolverOptions& options) {
   if (options.exact) return "exact rows belong to averaged curves, not to conforming ones";
   if (options.solver != Solver::gcr)
     return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";
@@ -58,7 +54,7 @@ std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& 
 
 CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& options) {
   if (options.curve_method == CurveMethod::averaged) return CurveMethod::averaged;
-  const std::string why_not = why_not_conforming(problem, options);
+  const std::string why_not = why_not_conforming(options);
   if (options.curve_method == CurveMethod::conforming) {
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;

@@ -8,7 +8,7 @@
 namespace drumhead::multigrid {
 
 /// Why conforming cells cannot meet these curves, naming value and bound; empty: they can.
-std::string why_not_conforming(const WarpProblem& problem, const SolverOptions& options);
+std::string why_not_conforming(const SolverOptions& options);
 
 /// What `options.curve_method` means for this scene: automatic is conforming where that is
 /// possible, and otherwise averaged. (Of 62 runs, the study's cases on 32² and 128², 59 converge

@@ -265,11 +265,18 @@ TEST_F(DriverWarp, FoldFreeLeavesNoFoldedCell) {
   EXPECT_EQ(free["folds"]["folded_cells"], 0);
   scratch.write("scene.toml",
                 "picture = \"photo.png\"\ncurves = \"curves.svg\"\ncells = 48\nkappa = 10\n"
-                "model = \"fold-free\"\neps = 0.1\n");
-  const RunResult same =
-      run_drumhead(scratch, {"warp", "scene.toml", "-o", "s.png", "--report", "s.json"});
-  EXPECT_EQ(same.exit_code, 0) << same.err;
-  EXPECT_EQ(Json::parse(read_text(scratch / "s.json"))["folds"], free["folds"]);
+                "model = \"fold-free\"\neps = 0.1\ncurve_method = \"averaged\"\n");
+  const auto scene = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all{"warp", "scene.toml", "-o", "s.png", "--report", "s.json"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const RunResult result = run_drumhead(scratch, all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(read_text(scratch / "s.json"));
+  };
+  EXPECT_EQ(scene({})["folds"], free["folds"]);
+  const Json automatic = scene({"--curve-method", "auto"});
+  EXPECT_EQ(automatic["curve_method"], "conforming");
+  EXPECT_EQ(automatic["folds"]["folded_cells"], 0);
 }
 
 TEST_F(DriverWarp, HarmonicIsTheMembraneWithoutPressure) {

@@ -17,7 +17,7 @@ namespace {
 
 using kernels::Model;
 
-using scenes::case_name, scenes::s2;
+using scenes::case_name, scenes::s1, scenes::s2, scenes::s4;
 using Case = scenes::MembraneCase;
 
 multigrid::Solution solved(const Case& c, int n, double tolerance_cells) {
@@ -29,6 +29,13 @@ std::vector<Case> cases() {
   std::vector<Case> all = scenes::settling_membranes();
   std::ranges::copy(scenes::one_sided_membranes(), std::back_inserter(all));
   std::ranges::copy(scenes::soft_membranes(), std::back_inserter(all));
+  for (const Case& c : {Case{"S1foldfree", s1, Model::fold_free},
+                        {"S2foldfree", s2, Model::fold_free},
+                        {"S2foldfree10", s2, Model::fold_free, 10.0},
+                        {"S4foldfree", s4, Model::fold_free},
+                        {"S4foldfree10", s4, Model::fold_free, 10.0},
+                        {"S4foldfreeSoft100", s4, Model::fold_free, 10.0, 100.0}})
+    all.push_back(c);
   return all;
 }
 
@@ -44,7 +51,7 @@ TEST_P(ConformingMembrane, Converges) {
   if (std::isinf(c.weight)) {
     EXPECT_LT(solution.report.curves[0].gap_max_px, 5e-4);
   }
-  if (c.kappa >= 1e3) {
+  if (c.kappa >= 1e3 || c.model == Model::fold_free) {
     EXPECT_EQ(solution.report.folds.folded_cells, 0);
   }
 }
@@ -127,6 +134,8 @@ TEST(ConformingMembranes, AutomaticLeavesThoseThatDoNotSettleToAveragedRows) {
   multigrid::WarpProblem problem = scenes::problem(s2, 32, 1.0);
   problem.material.model = Model::stvk;
   EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::averaged);
+  problem.material.model = Model::fold_free;
+  EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::conforming);
   problem.material.model = Model::arap;
   EXPECT_EQ(multigrid::solve(problem).report.curve_method, multigrid::CurveMethod::conforming);
   problem.material.kappa = 1e4;
@@ -160,6 +169,7 @@ TEST(ConformingMembranes, AreOfSecondOrder) {
        {Bound{Model::corotated, 1.0, 1.9, 4e-5}, Bound{Model::corotated, 10.0, 1.9, 5.5e-5},
         Bound{Model::neohookean, 1.0, 1.9, 1.2e-4}, Bound{Model::neohookean, 10.0, 1.5, 3e-4},
         Bound{Model::arap, 1.0, 1.8, 5e-5}, Bound{Model::arap, 10.0, 1.5, 1e-4},
+        Bound{Model::fold_free, 1.0, 1.8, 5e-5}, Bound{Model::fold_free, 10.0, 1.9, 1.2e-4},
         Bound{Model::corotated, 1.0, 1.9, 4e-5, 100.0},
         Bound{Model::neohookean, 1.0, 1.9, 1.2e-4, 100.0},
         Bound{Model::arap, 1.0, 1.8, 5e-5, 100.0}}) {
@@ -214,6 +224,35 @@ TEST_P(ConformingFoldFree, ManyDiscsAndTurningDiscs) {
     EXPECT_EQ(solution.report.folds.folded_cells, 0) << scene.name;
     EXPECT_GT(solution.report.folds.min_corner_J, 0.0) << scene.name;
   }
+}
+
+/// crpm folds cells along these curves with averaged rows, and with conforming ones where it is
+/// soft; fold-free does neither.
+TEST(ConformingMembranes, FoldFreeLeavesNoFoldedCellOrTriangle) {
+  const scenes::Scene s2_90 = scenes::roundabout(90.0, scenes::kStudyOffset);
+  for (const auto& [scene, kappa] :
+       {std::pair{s1, 1.0}, std::pair{s2_90, 1.0}, std::pair{s2_90, 10.0}, std::pair{s4, 1.0},
+        std::pair{s4, 10.0}}) {
+    const multigrid::Solution folded = solved({"", scene, Model::crpm, kappa}, 100, 0.0),
+                              free = solved({"", scene, Model::fold_free, kappa}, 100, 0.0);
+    EXPECT_EQ(free.report.status, multigrid::Status::converged) << scene.name << " " << kappa;
+    EXPECT_GT(folded.report.folds.folded_cells, 5) << scene.name << " " << kappa;
+    EXPECT_EQ(free.report.folds.folded_cells, 0) << scene.name << " " << kappa;
+    EXPECT_GT(free.report.folds.min_corner_J, 0.1) << scene.name << " " << kappa;
+    for (const multigrid::LevelReport& level : free.report.levels)
+      EXPECT_LE(level.newton.size(), 60u) << scene.name << " " << kappa << " " << level.nx;
+  }
+}
+
+TEST(ConformingMembranes, WithoutAFoldFreeStateASentenceSaysSo) {
+  const multigrid::Solution solution =
+      solved({"", scenes::fold(scenes::kStudyOffset), Model::fold_free}, 32, 0.0);
+  EXPECT_EQ(solution.report.status, multigrid::Status::stalled)
+      << multigrid::name(solution.report.status);
+  EXPECT_GT(solution.report.folds.folded_cells, 0);
+  EXPECT_TRUE(std::ranges::any_of(solution.report.notes, [](const std::string& note) {
+    return note.starts_with("no state without folds was found: ");
+  }));
 }
 
 INSTANTIATE_TEST_SUITE_P(Arap, ConformingFoldFree, testing::Values(1e3, 1e4, 1e6));

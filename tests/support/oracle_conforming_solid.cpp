@@ -50,11 +50,21 @@ class Assembly {
       return Slopes{{number(i, j), number(i + 1, j), number(i, j + 1), number(i + 1, j + 1)},
                     {{t - 1, s - 1}, {1 - t, -s}, {-t, 1 - s}, {t, s}}};
     };
+    if (law_.model == "fold-free") {
+      for (int n = 0; n < 4; ++n) add_fold_free(at(n % 2, n / 2), 0.25);
+      return add(at(0.5, 0.5), 1.0, "volume", 1.0, law_.kappa, -1.0);
+    }
     const double g = 0.5 / std::sqrt(3.0);
     for (const double t : {0.5 - g, 0.5 + g})
       for (const double s : {0.5 - g, 0.5 + g}) add(at(s, t), 0.25, law_.model, 1.0, law_.kappa);
     for (int n = 0; n < 4 && law_.model == "arap"; ++n)
       add(at(n % 2, n / 2), 0.25, "one_sided", 1.0, law_.kappa);
+  }
+
+  /// Its density but for the part with kappa.
+  void add_fold_free(const Slopes& at, double weight) {
+    add(at, weight, "harmonic", 1.0, 0.0);
+    add(at, weight, "one_sided", 1.0, law_.corner);
   }
 
   void add_springs() {
@@ -90,14 +100,22 @@ class Assembly {
         mean.node.push_back(own.node.back());
         mean.slope.push_back(share * own.slope.back());
       }
+      if (law_.model == "fold-free") {
+        add_fold_free(own, triangle.area);
+        continue;
+      }
       add(own, triangle.area, law_.model, 1.0, 0.0);
       if (law_.model == "arap") add(own, triangle.area, "one_sided", 1.0, law_.kappa);
     }
-    if (law_.model != "arap")
+    if (law_.model == "fold-free")
+      add(mean, cells.part_area[std::size_t(p)], "volume", 1.0, law_.kappa, -1.0);
+    else if (law_.model != "arap")
       add(mean, cells.part_area[std::size_t(p)], law_.model, 0.0, law_.kappa);
   }
 
-  void add(const Slopes& at, double weight, const std::string& model, double mu, double kappa) {
+  /// `least`: eigenvalue of the projected tangent.
+  void add(const Slopes& at, double weight, const std::string& model, double mu, double kappa,
+           double least = 0.0) {
     Matrix2 F = Matrix2::Zero();
     for (std::size_t n = 0; n < at.node.size(); ++n)
       F += x_.row(at.node[n]).transpose() * at.slope[n].transpose();
@@ -105,7 +123,7 @@ class Assembly {
     Eigen::Matrix4d tangent = law.tangent;
     if (projected_) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(tangent);
-      tangent = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+      tangent = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(least).asDiagonal() *
                 eigen.eigenvectors().transpose();
     }
     const Eigen::Index count = Eigen::Index(at.node.size());

@@ -17,8 +17,8 @@
 // 0 there.
 //
 // Isotropic membranes (model.h) have no pressures: their part with mu is taken at F of every
-// triangle, that with kappa at the mean F of every part (arap's one-sided one, too, at every
-// triangle, whose J it keeps above eps), and the rows of near nodes have 2×2 blocks.
+// triangle, that with kappa at the mean F of every part (the one-sided one of arap and fold-free,
+// too, at every triangle, whose J it keeps above eps), and the rows of near nodes have 2×2 blocks.
 #include <cstddef>
 #include <limits>
 #include <span>
