@@ -50,9 +50,9 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
-  /// Conforming where that is possible (Solver::gcr, hard curves, not exact), the membrane is not
-  /// stvk and, for the others but crpm and harmonic, kappa/mu is at most 300; else averaged;
-  /// averaged, too, where conforming cells do not converge.
+  /// Conforming where that is possible (Solver::gcr, not exact), the membrane is not stvk, kappa/mu
+  /// is at most 300 for the others but crpm and harmonic, and at most 200 for crpm where a curve is
+  /// soft; else averaged; averaged, too, where conforming cells do not converge.
   automatic,
   averaged,   ///< mean rows per cut cell (Setaluri et al. 2014, Eq. 2): first order, soft or hard
   conforming  ///< cells divided along the curves (grid/conforming.h): second order, soft or hard
@@ -81,7 +81,7 @@ class KeptLevels {
 
 struct SolverOptions {
   Solver solver = Solver::gcr;
-  /// Conforming curves are hard, not exact, and need Solver::gcr.
+  /// Conforming curves are not exact, and need Solver::gcr.
   CurveMethod curve_method = CurveMethod::automatic;
   /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
   bool exact = false;
