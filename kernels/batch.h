@@ -7,6 +7,7 @@
 // operation is element-wise and never contracted: all widths agree bit for bit. The row kernels are
 // [[gnu::flatten]]: the compiler takes a formula of this size for too large to inline and would
 // pass batches through memory (a relaxation took 1.26 times as long).
+#include <array>
 #include <cmath>
 #include <xsimd/xsimd.hpp>
 
@@ -82,6 +83,24 @@ struct Tail<double> {
   V load(const double* at) const { return V(_mm512_maskz_loadu_pd(lanes, at)); }
   void store(V value, double* at) const { _mm512_mask_storeu_pd(at, lanes, value); }
 };
+/// The last lane of `before`, then all but the last of `now`.
+inline Tail<float>::V shifted(Tail<float>::V before, Tail<float>::V now) {
+  return _mm512_castsi512_ps(
+      _mm512_alignr_epi32(_mm512_castps_si512(now), _mm512_castps_si512(before), 15));
+}
+inline Tail<double>::V shifted(Tail<double>::V before, Tail<double>::V now) {
+  return _mm512_castsi512_pd(
+      _mm512_alignr_epi64(_mm512_castpd_si512(now), _mm512_castpd_si512(before), 7));
+}
+/// All but the first lane of `now`, then the first of `after`.
+inline Tail<float>::V shifted_back(Tail<float>::V now, Tail<float>::V after) {
+  return _mm512_castsi512_ps(
+      _mm512_alignr_epi32(_mm512_castps_si512(after), _mm512_castps_si512(now), 1));
+}
+inline Tail<double>::V shifted_back(Tail<double>::V now, Tail<double>::V after) {
+  return _mm512_castsi512_pd(
+      _mm512_alignr_epi64(_mm512_castpd_si512(after), _mm512_castpd_si512(now), 1));
+}
 #elif DRUMHEAD_ISA_LEVEL == 2
 /// The first `count` lanes of a batch; the others read nothing, hold 0 and write nothing. Stores go
 /// in halves: AVX2's masked store takes some forty cycles on Zen 4.
@@ -98,6 +117,7 @@ struct Tail<float> {
   __m256i lanes = first_bytes(4 * count);
   V load(const float* at) const { return V(_mm256_maskload_ps(at, lanes)); }
   void store(V value, float* at) const {
+    if (count == 8) return _mm256_storeu_ps(at, value);
     __m128 rest = _mm256_castps256_ps128(value);
     if (count & 4) {
       _mm_storeu_ps(at, rest);
@@ -119,6 +139,7 @@ struct Tail<double> {
   __m256i lanes = first_bytes(8 * count);
   V load(const double* at) const { return V(_mm256_maskload_pd(at, lanes)); }
   void store(V value, double* at) const {
+    if (count == 4) return _mm256_storeu_pd(at, value);
     __m128d rest = _mm256_castpd256_pd128(value);
     if (count & 2) {
       _mm_storeu_pd(at, rest);
@@ -128,7 +149,52 @@ struct Tail<double> {
     if (count & 1) _mm_store_sd(at, rest);
   }
 };
+/// The last lane of `before`, then all but the last of `now`.
+inline Tail<float>::V shifted(Tail<float>::V before, Tail<float>::V now) {
+  const __m256 between = _mm256_permute2f128_ps(before, now, 0x21);
+  return _mm256_castsi256_ps(
+      _mm256_alignr_epi8(_mm256_castps_si256(now), _mm256_castps_si256(between), 12));
+}
+inline Tail<double>::V shifted(Tail<double>::V before, Tail<double>::V now) {
+  return _mm256_shuffle_pd(_mm256_permute2f128_pd(before, now, 0x21), now, 0x5);
+}
+/// All but the first lane of `now`, then the first of `after`.
+inline Tail<float>::V shifted_back(Tail<float>::V now, Tail<float>::V after) {
+  const __m256 between = _mm256_permute2f128_ps(now, after, 0x21);
+  return _mm256_castsi256_ps(
+      _mm256_alignr_epi8(_mm256_castps_si256(between), _mm256_castps_si256(now), 4));
+}
+inline Tail<double>::V shifted_back(Tail<double>::V now, Tail<double>::V after) {
+  return _mm256_shuffle_pd(now, _mm256_permute2f128_pd(now, after, 0x21), 0x5);
+}
+#elif DRUMHEAD_ISA_LEVEL == 1
+/// The last lane of `before`, then all but the last of `now`.
+inline xsimd::batch<float, xsimd::sse2> shifted(xsimd::batch<float, xsimd::sse2> before,
+                                                xsimd::batch<float, xsimd::sse2> now) {
+  const __m128 between = _mm_shuffle_ps(before, now, _MM_SHUFFLE(0, 0, 3, 3));
+  return _mm_shuffle_ps(between, now, _MM_SHUFFLE(2, 1, 2, 0));
+}
+inline xsimd::batch<double, xsimd::sse2> shifted(xsimd::batch<double, xsimd::sse2> before,
+                                                 xsimd::batch<double, xsimd::sse2> now) {
+  return _mm_shuffle_pd(before, now, 1);
+}
+/// All but the first lane of `now`, then the first of `after`.
+inline xsimd::batch<float, xsimd::sse2> shifted_back(xsimd::batch<float, xsimd::sse2> now,
+                                                     xsimd::batch<float, xsimd::sse2> after) {
+  const __m128 between = _mm_shuffle_ps(now, after, _MM_SHUFFLE(0, 0, 3, 3));
+  return _mm_shuffle_ps(now, between, _MM_SHUFFLE(2, 0, 2, 1));
+}
+inline xsimd::batch<double, xsimd::sse2> shifted_back(xsimd::batch<double, xsimd::sse2> now,
+                                                      xsimd::batch<double, xsimd::sse2> after) {
+  return _mm_shuffle_pd(now, after, 1);
+}
+inline float last_lane(xsimd::batch<float, xsimd::sse2> a) { return a.get(3); }
+inline double last_lane(xsimd::batch<double, xsimd::sse2> a) { return a.get(1); }
 #endif
+inline float shifted(float before, float) { return before; }
+inline double shifted(double before, double) { return before; }
+inline float shifted_back(float, float after) { return after; }
+inline double shifted_back(double, double after) { return after; }
 
 /// formula(lane, zero of the lane type, k) for k in [begin, end), several k at a time.
 template <class T, class F>
@@ -146,6 +212,74 @@ inline void for_lanes(int begin, int end, F&& formula) {
   for (; k + width <= end; k += width) formula(Lane<V>{}, V(T(0)), k);
 #endif
   for (; k < end; ++k) formula(Lane<T>{}, T(0), k);
+#endif
+}
+
+#if DRUMHEAD_ISA_LEVEL < 2
+/// A lane that reads 0 and writes nothing.
+template <class T>
+struct NoLane {
+  static T load(const T*) { return T(0); }
+  static void store(T, T*) {}
+};
+#endif
+
+/// formula(even lane, odd lane, zero, k, carried) for the columns 2k < 2·even and 2k + 1 of a row,
+/// both at a time; the last batch may have one odd column less (even − odd is 0 or 1). `carried`
+/// are N values that one call leaves to the next.
+template <int N, class T, class F>
+inline void for_lane_pairs(int even, int odd, F&& formula) {
+  int k = 0;
+#if DRUMHEAD_ISA_LEVEL >= 2
+  using V = typename Tail<T>::V;
+  constexpr int width = int(V::size);
+  std::array<V, N> carried;
+  carried.fill(V(T(0)));
+  for (; k + width <= odd; k += width) formula(Lane<V>{}, Lane<V>{}, V(T(0)), k, carried);
+  if (k < even) formula(Tail<T>{even - k}, Tail<T>{odd - k}, V(T(0)), k, carried);
+#else
+  std::array<T, N> last{};
+#if DRUMHEAD_ISA_LEVEL == 1
+  using V = xsimd::batch<T, xsimd::sse2>;
+  constexpr int width = int(V::size);
+  std::array<V, N> carried;
+  carried.fill(V(T(0)));
+  for (; k + width <= odd; k += width) formula(Lane<V>{}, Lane<V>{}, V(T(0)), k, carried);
+  for (int n = 0; n < N; ++n) last[n] = last_lane(carried[n]);
+#endif
+  for (; k < odd; ++k) formula(Lane<T>{}, Lane<T>{}, T(0), k, last);
+  if (k < even) formula(Lane<T>{}, NoLane<T>{}, T(0), k, last);
+#endif
+}
+
+/// The same from the last columns to the first.
+template <int N, class T, class F>
+inline void for_lane_pairs_westwards(int even, int odd, F&& formula) {
+#if DRUMHEAD_ISA_LEVEL >= 2
+  using V = typename Tail<T>::V;
+  constexpr int width = int(V::size);
+  std::array<V, N> carried;
+  carried.fill(V(T(0)));
+  int k = (even - 1) / width * width;
+  if (k + width > odd) {
+    formula(Tail<T>{even - k}, Tail<T>{odd - k}, V(T(0)), k, carried);
+    k -= width;
+  }
+  for (; k >= 0; k -= width) formula(Lane<V>{}, Lane<V>{}, V(T(0)), k, carried);
+#else
+  std::array<T, N> first{};
+  if (even > odd) formula(Lane<T>{}, NoLane<T>{}, T(0), odd, first);
+  int k = odd - 1;
+#if DRUMHEAD_ISA_LEVEL == 1
+  using V = xsimd::batch<T, xsimd::sse2>;
+  constexpr int width = int(V::size);
+  for (; (k + 1) % width != 0; --k) formula(Lane<T>{}, Lane<T>{}, T(0), k, first);
+  std::array<V, N> carried;
+  for (int n = 0; n < N; ++n) carried[n] = V(first[n]);
+  for (k -= width - 1; k >= 0; k -= width) formula(Lane<V>{}, Lane<V>{}, V(T(0)), k, carried);
+#else
+  for (; k >= 0; --k) formula(Lane<T>{}, Lane<T>{}, T(0), k, first);
+#endif
 #endif
 }
 

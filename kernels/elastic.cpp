@@ -8,6 +8,7 @@
 
 #include "isotropic.h"
 #include "kernel_table.h"
+#include "linear_rows.h"
 #include "parallel.h"
 #include "soft_sweeps.h"
 #include "special_energy.h"
@@ -26,31 +27,39 @@ void overwrite(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<
   if (d.p) overwrite_part_row(*m.special, f, d, out.p.row(j), out.listed, j);
 }
 
+/// H d, or f − H d if there is an f, of the elastic kernels' membranes.
+template <class T>
+void linear_rows(const Membrane<T>& m, const Unknowns<const T>* f, const Unknowns<const T>& d,
+                 const Unknowns<T>& out) {
+  const KernelTable<T>& kernels = table<T>();
+  const auto nodes = f ? kernels.residual_nodes : kernels.apply_nodes;
+  for_chunks_of_rows(0, d.x.rows - 1, d.x.columns, [&](int first, int last, int) {
+    LinearRows<T> rows(d.x.columns);
+    if (d.p) rows.begin(m, d, first);
+    for (int j = first; j < last; ++j) {
+      if (d.p)
+        rows.row(m, f, d, out, j);
+      else if (j > 0)
+        nodes(m, f, d, out.x.row(j), out.y.row(j), j);
+      overwrite<T>(m, f, d, out, j);
+    }
+  });
+  if (m.special) write_curve_rows<T>(*m.special, f, d, out);
+}
+
 }  // namespace
 
 template <class T>
 void apply_hessian(const Membrane<T>& m, const Unknowns<const T>& d, const Unknowns<T>& out) {
   if (isotropic(m.law.model)) return apply_isotropic(m, d, out);
-  const KernelTable<T>& kernels = table<T>();
-  for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
-    if (j > 0) kernels.apply_nodes(m, nullptr, d, out.x.row(j), out.y.row(j), j);
-    if (d.p) kernels.apply_cells(m, nullptr, d, out.p.row(j), j);
-    overwrite<T>(m, nullptr, d, out, j);
-  });
-  if (m.special) write_curve_rows<T>(*m.special, nullptr, d, out);
+  linear_rows<T>(m, nullptr, d, out);
 }
 
 template <class T>
 void linear_residual(const Membrane<T>& m, const Unknowns<const T>& f, const Unknowns<const T>& d,
                      const Unknowns<T>& r) {
   assert(!isotropic(m.law.model));
-  const KernelTable<T>& kernels = table<T>();
-  for_rows(0, d.x.rows - 1, d.x.columns, [&](int j) {
-    if (j > 0) kernels.residual_nodes(m, &f, d, r.x.row(j), r.y.row(j), j);
-    if (d.p) kernels.residual_cells(m, &f, d, r.p.row(j), j);
-    overwrite<T>(m, &f, d, r, j);
-  });
-  if (m.special) write_curve_rows<T>(*m.special, &f, d, r);
+  linear_rows<T>(m, &f, d, r);
 }
 
 template <class T>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of the elastic kernels: Hessian–vector product, linear residual, force and energy.
-#include "pressure_jump.h"
+// Rows of the elastic kernels: product and residual at nodes alone, force.
 #include "stencil.h"
 #include "sums.h"
 
@@ -39,7 +38,8 @@ struct CellCompliance {
   }
 };
 
-/// Node row j of r = f − H d (kResidual) or of H d, without curve forces.
+/// Node row j of r = f − H d (kResidual) or of H d, without curve forces, node by node: where there
+/// are no pressures, or volume rows are not wanted (otherwise linear_body.h).
 template <bool kResidual, class T>
 [[gnu::flatten]] void linear_nodes_row(const Membrane<T>& m, const Unknowns<const T>* f,
                                        const Unknowns<const T>& d, SplitRow<T> rx, SplitRow<T> ry,
@@ -70,33 +70,6 @@ template <bool kResidual, class T>
       });
     }
   });
-}
-
-/// Cell row j of f_p − (B d − A/kappa dP) (kResidual) or of B d − A/kappa dP, the jump term
-/// included.
-template <bool kResidual, class T>
-[[gnu::flatten]] void linear_cells_row(const Membrane<T>& m, const Unknowns<const T>* f,
-                                       const Unknowns<const T>& d, SplitRow<T> r, int j) {
-  for (int parity = 0; parity < 2; ++parity) {
-    const CellStencil<T> stencil(m, j, parity);
-    const Corners<const T> x(d.x, j, parity), y(d.y, j, parity);
-    const CellCompliance<T> compliance(m, j, parity);
-    const T* dp = d.p.half(j, parity);
-    const T* g = nullptr;
-    if constexpr (kResidual) g = f->p.half(j, parity);
-    T* out = r.half[parity];
-    for_lanes<T>(0, half_count(d.p.columns, parity), [&](auto lane, auto zero, int k) {
-      using B = decltype(zero);
-      B d1x, d1y, d2x, d2y, e1x, e1y, e2x, e2y;
-      stencil.cell_diagonals(lane, zero, k, d1x, d1y, d2x, d2y);
-      correction_diagonals(lane, zero, x, y, k, e1x, e1y, e2x, e2y);
-      B value = B(T(0.5)) * ((d1x * e2y - d1y * e2x) + (e1x * d2y - e1y * d2x));
-      value = value - compliance(lane, zero, k) * lane.load(dp + k);
-      if constexpr (kResidual) value = lane.load(g + k) - value;
-      lane.store(value, out + k);
-    });
-  }
-  if (m.pressure_jump > T(0)) add_pressure_jump_row(m, d.p, T(kResidual ? 1 : -1), r, j);
 }
 
 /// Node row j of −(K x̂ + Bᵀ P): the elastic force, without curve forces.

@@ -5,19 +5,21 @@
 #include "folds_body.h"
 #include "kaczmarz_body.h"
 #include "kernel_table.h"
+#include "linear_body.h"
 #include "reduce_body.h"
 #include "relax_body.h"
 #include "transfer_body.h"
+#include "volume_body.h"
 
 namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE {
 
 template <class T>
 constexpr KernelTable<T> make_table() {
   return {
+      .apply = linear_row<false, T>,
+      .residual = linear_row<true, T>,
       .apply_nodes = linear_nodes_row<false, T>,
-      .apply_cells = linear_cells_row<false, T>,
       .residual_nodes = linear_nodes_row<true, T>,
-      .residual_cells = linear_cells_row<true, T>,
       .force_nodes = force_nodes_row<T>,
       .force_cells = force_cells_row<T>,
       .inverted_cells = inverted_cells_row<T>,
@@ -25,6 +27,7 @@ constexpr KernelTable<T> make_table() {
       .relax_nodes = relax_nodes_row<T>,
       .start_nodes = start_nodes_row<T>,
       .relax_volume = relax_volume_row<T>,
+      .relax_volume_spans = relax_volume_spans<T>,
       .kaczmarz_nodes = kaczmarz_nodes_row<T>,
       .kaczmarz_cells = kaczmarz_cells_row<T>,
       .jacobi_nodes = jacobi_nodes_row<T>,

@@ -10,6 +10,14 @@
 
 namespace drumhead::kernels {
 
+/// Where row j of H d or f − H d goes: nodes (row 0: nothing that is wanted), volume rows, and
+/// twice what the cells of row j − 1 add to the nodes of row j, which becomes that for row j + 1.
+/// Column 0 of the nodes is left as it is.
+template <class T>
+struct LinearRow {
+  SplitRow<T> x, y, p, carried_x, carried_y;
+};
+
 template <class T>
 struct KernelTable {
   using Fields = Unknowns<T>;
@@ -17,12 +25,15 @@ struct KernelTable {
   using Row = SplitRow<T>;
   using ConstRow = SplitRow<const T>;
 
+  /// Where there are pressures; all fields of nodes are laid out alike.
+  void (*apply)(const Membrane<T>&, const ConstFields*, const ConstFields& d, const LinearRow<T>&,
+                int j);
+  void (*residual)(const Membrane<T>&, const ConstFields* f, const ConstFields& d,
+                   const LinearRow<T>&, int j);
+  /// Nodes alone, with or without pressures.
   void (*apply_nodes)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, Row,
                       int j);
-  void (*apply_cells)(const Membrane<T>&, const ConstFields*, const ConstFields& d, Row, int j);
   void (*residual_nodes)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row, Row,
-                         int j);
-  void (*residual_cells)(const Membrane<T>&, const ConstFields* f, const ConstFields& d, Row,
                          int j);
   void (*force_nodes)(const Membrane<T>&, const Fields& out, int j);
   void (*force_cells)(const Membrane<T>&, const Fields& out, int j);
@@ -33,8 +44,10 @@ struct KernelTable {
   void (*relax_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int colour,
                       Spans nodes, int j);
   void (*start_nodes)(const Membrane<T>&, const ConstFields& f, const Fields& d, int j);
-  void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
-                       Spans cells, int j);
+  void (*relax_volume)(const Membrane<T>&, const ConstFields& f, const Fields& d, bool reverse,
+                       const ConstRow& share, int j);
+  void (*relax_volume_spans)(const Membrane<T>&, const ConstFields& f, const Fields& d, int parity,
+                             Spans cells, int j);
 
   void (*kaczmarz_nodes)(const KaczmarzSystem<T>&, Reach, int j);
   void (*kaczmarz_cells)(const KaczmarzSystem<T>&, Reach, int parity, int j);

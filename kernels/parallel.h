@@ -19,16 +19,25 @@ inline int threads_for(std::ptrdiff_t nodes) {
   return nodes < kSerialNodes || omp_in_parallel() ? 1 : omp_get_max_threads();
 }
 
-/// body(j, thread) for j in [begin, end), `columns` nodes each.
+/// body(first, last, thread): the rows [begin, end) of `columns` nodes, a chunk for each thread.
+template <class F>
+void for_chunks_of_rows(int begin, int end, int columns, F&& body) {
+  const int threads = threads_for(std::ptrdiff_t(end - begin) * columns);
+  if (threads == 1) return body(begin, end, 0);
+#pragma omp parallel num_threads(threads)
+  {
+    const int n = omp_get_num_threads(), me = omp_get_thread_num();
+    const auto cut = [&](int c) { return begin + int(std::ptrdiff_t(end - begin) * c / n); };
+    body(cut(me), cut(me + 1), me);
+  }
+}
+
+/// body(j, thread) for j in [begin, end).
 template <class F>
 void for_rows_on_threads(int begin, int end, int columns, F&& body) {
-  const int threads = threads_for(std::ptrdiff_t(end - begin) * columns);
-  if (threads == 1) {
-    for (int j = begin; j < end; ++j) body(j, 0);
-    return;
-  }
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int j = begin; j < end; ++j) body(j, omp_get_thread_num());
+  for_chunks_of_rows(begin, end, columns, [&](int first, int last, int thread) {
+    for (int j = first; j < last; ++j) body(j, thread);
+  });
 }
 
 /// body(j) for j in [begin, end).

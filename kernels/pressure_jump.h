@@ -16,14 +16,20 @@ struct JumpSums {
   B difference, weight;
 };
 
+/// Values of the cells beside a cell.
+template <class B>
+struct CellsBeside {
+  B west, east, south, north;
+};
+
 /// The term at the cells of one parity in row j.
 template <class T>
 struct PressureJump {
   T strength, spacing, mu, south, north;
-  CellStencil<T> state;
+  Plane<const T> ux, uy;
   const T *own, *odd, *below, *above;  // dP; the west neighbour is odd[k − 1 + parity]
   const T *mu_own = nullptr, *mu_odd = nullptr, *mu_below = nullptr, *mu_above = nullptr;
-  int west;
+  int row, parity;
 
   PressureJump(const Membrane<T>& m, const Plane<const T>& p, int j, int parity)
       : strength(T(0.125) * m.pressure_jump),
@@ -31,8 +37,10 @@ struct PressureJump {
         mu(m.mu.value),
         south(T(j > 0)),
         north(T(j + 1 < p.rows)),
-        state(m, j, parity),
-        west(parity - 1) {
+        ux(m.ux),
+        uy(m.uy),
+        row(j),
+        parity(parity) {
     const int low = j > 0 ? j - 1 : j, high = j + 1 < p.rows ? j + 1 : j;
     own = p.half(j, parity);
     odd = p.half(j, 1 - parity);
@@ -45,32 +53,53 @@ struct PressureJump {
     mu_above = m.mu.cells.half(high, parity);
   }
 
+  /// Of cells with dP = p; `scale`: sigma/(8 (mu_a + mu_b)) of their edges, `west`, `east`: u.
+  template <class B>
+  JumpSums<B> sums(B p, const CellsBeside<B>& beside, const CellsBeside<B>& scale,
+                   const Sides<B>& west, const Sides<B>& east) const {
+    const B h(spacing);
+    JumpSums<B> sums{B(T(0)), B(T(0))};
+    auto edge = [&](B ex, B ey, B other, B by) {
+      const B weight = by * (ex * ex + ey * ey);
+      sums.difference = sums.difference + weight * (p - other);
+      sums.weight = sums.weight + weight;
+    };
+    edge(west.x.north - west.x.south, (west.y.north - west.y.south) + h, beside.west, scale.west);
+    edge(east.x.north - east.x.south, (east.y.north - east.y.south) + h, beside.east, scale.east);
+    edge((east.x.south - west.x.south) + h, east.y.south - west.y.south, beside.south, scale.south);
+    edge((east.x.north - west.x.north) + h, east.y.north - west.y.north, beside.north, scale.north);
+    return sums;
+  }
+
+  /// sigma/(8 (mu_a + mu_b)) of the edges of cells k. `free_west`, `free_east`: 0 where the edge
+  /// lies on the lattice's boundary, else 1; `mu_west`, `mu_east`: mu of the cells there.
+  template <class L, class B>
+  CellsBeside<B> scale(L lane, int k, B free_west, B free_east, B mu_west, B mu_east) const {
+    const B once(strength * (T(0.5) / mu));
+    if (!mu_own) return {once * free_west, once * free_east, once * B(south), once * B(north)};
+    const B mu_here = lane.load(mu_own + k), least(T(1e-20));
+    // Lanes past the end of a row have no mu.
+    auto over = [&](B free, B mu_there) {
+      return B(strength) * free / larger(mu_here + mu_there, least);
+    };
+    return {over(free_west, mu_west), over(free_east, mu_east),
+            over(B(south), lane.load(mu_below + k)), over(B(north), lane.load(mu_above + k))};
+  }
+
   /// `has_west`, `has_east`: false in the first and last column.
   template <class L, class B>
   JumpSums<B> operator()(L lane, B zero, int k, bool has_west = true, bool has_east = true) const {
-    JumpSums<B> sums{zero, zero};
-    const B p = lane.load(own + k), h(spacing);
-    const auto& x = state.ux;
-    const auto& y = state.uy;
-    auto edge = [&](B ex, B ey, const T* other, const T* mu_other, int n, T present) {
-      B weight = B(strength * present) * (ex * ex + ey * ey);
-      if (mu_own)
-        weight = weight / (lane.load(mu_own + k) + lane.load(mu_other + n));
-      else
-        weight = weight * B(T(0.5) / mu);
-      sums.difference = sums.difference + weight * (p - lane.load(other + n));
-      sums.weight = sums.weight + weight;
+    const int w = k + parity - 1, e = w + 1;
+    const auto west_of = [&](const T* values) { return has_west ? lane.load(values + w) : zero; };
+    const auto east_of = [&](const T* values) { return has_east ? lane.load(values + e) : zero; };
+    const auto sides = [&](int of, int n) {
+      return load_sides<B>(lane, ux.half(row, of) + n, uy.half(row, of) + n, ux.stride);
     };
-    const B x00 = lane.load(x.n00 + k), x10 = lane.load(x.n10 + k), x01 = lane.load(x.n01 + k),
-            x11 = lane.load(x.n11 + k);
-    const B y00 = lane.load(y.n00 + k), y10 = lane.load(y.n10 + k), y01 = lane.load(y.n01 + k),
-            y11 = lane.load(y.n11 + k);
-    const int w = k + west, e = w + 1;
-    if (has_west) edge(x01 - x00, (y01 - y00) + h, odd, mu_odd, w, T(1));
-    if (has_east) edge(x11 - x10, (y11 - y10) + h, odd, mu_odd, e, T(1));
-    edge((x10 - x00) + h, y10 - y00, below, mu_below, k, south);
-    edge((x11 - x01) + h, y11 - y01, above, mu_above, k, north);
-    return sums;
+    return sums(lane.load(own + k),
+                {west_of(odd), east_of(odd), lane.load(below + k), lane.load(above + k)},
+                scale(lane, k, B(T(has_west)), B(T(has_east)), mu_odd ? west_of(mu_odd) : zero,
+                      mu_odd ? east_of(mu_odd) : zero),
+                sides(parity, k), sides(1 - parity, k + parity));
   }
 };
 

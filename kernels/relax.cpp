@@ -16,7 +16,7 @@ namespace drumhead::kernels {
 template <class T>
 RowScratch<T>::RowScratch(int columns, int threads)
     : odd_(((columns + 1) / 2 + 15) / 16 * 16),
-      storage_(std::size_t(threads) * (10 + 4) * 2 * std::size_t(odd_)),
+      storage_(std::size_t(threads) * (11 + 4) * 2 * std::size_t(odd_)),
       rows_(std::size_t(threads)) {
   T* at = storage_.data();
   for (Rows& rows : rows_) {
@@ -24,12 +24,17 @@ RowScratch<T>::RowScratch(int columns, int threads)
     for (T*& row : rows.y) row = std::exchange(at, at + 2 * odd_);
     for (T*& row : rows.p) row = std::exchange(at, at + 2 * odd_);
     rows.kept = std::exchange(at, at + 8 * odd_);
+    for (T*& half : rows.share.half) half = std::exchange(at, at + odd_);
+    std::fill_n(rows.share.half[0], 2 * odd_, T(1));
   }
 }
 
 template <class T>
 void RowScratch<T>::forget() {
-  for (Rows& rows : rows_) std::fill_n(rows.held, 4, -1);
+  for (Rows& rows : rows_) {
+    std::fill_n(rows.held, 4, -1);
+    rows.next = -1;
+  }
 }
 
 template <class T>
@@ -140,10 +145,12 @@ class Relaxation {
     relax_near_row(*special_, f_, d_, j);
     relax_curve_row(*special_, f_, d_, j);
   }
-  void volume(int parity, bool reverse, T* kept, int j) const {
-    auto sweep = [&] { kernels_.relax_volume(level_.membrane, f_, d_, parity, {}, j); };
-    if (!special_) return sweep();
-    relax_volume_and_parts(*special_, level_.f, d_, parity, reverse, j, kept, sweep);
+  void volume(bool reverse, typename RowScratch<T>::Rows& rows, int j) const {
+    const auto sweep = [&](const SplitRow<const T>& share) {
+      kernels_.relax_volume(level_.membrane, f_, d_, reverse, share, j);
+    };
+    if (!special_ || special_->regular_row(j)) return sweep({});
+    relax_volume_and_parts(*special_, level_.f, d_, reverse, j, rows.kept, rows.share, sweep);
   }
   void parts(bool reverse, int j) const {
     for (const int column : {int(reverse), int(!reverse)})
@@ -184,7 +191,7 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
   const Relaxation<T> relaxation(level);
   skewed_sweeps(ny, list.count, level.d.x.columns, [&](int s, int j, int thread) {
     const Stage& stage = list.at[std::size_t(s)];
-    T* kept = scratch.rows(thread).kept;
+    typename RowScratch<T>::Rows& rows = scratch.rows(thread);
     switch (stage.sweep) {
       case Sweep::clear:
         relaxation.clear(j);
@@ -193,18 +200,16 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
         relaxation.prolong(*coarse_d, j);
         break;
       case Sweep::start:
-        if (j > 0) relaxation.start(kept, j);
+        if (j > 0) relaxation.start(rows.kept, j);
         break;
       case Sweep::nodes:
-        if (j > 0) relaxation.nodes(stage.colour, kept, j);
+        if (j > 0) relaxation.nodes(stage.colour, rows.kept, j);
         break;
       case Sweep::near:
         if ((j & 1) == stage.colour) relaxation.near(j);
         break;
       case Sweep::volume:
-        if ((j & 1) != stage.colour) break;
-        relaxation.volume(int(stage.reverse), stage.reverse, kept, j);
-        relaxation.volume(int(!stage.reverse), stage.reverse, kept, j);
+        if ((j & 1) == stage.colour) relaxation.volume(stage.reverse, rows, j);
         break;
       case Sweep::parts:
         if ((j & 1) == stage.colour) relaxation.parts(stage.reverse, j);
@@ -242,7 +247,7 @@ void relax_band(const LevelSystem<T>& level) {
       relax_cuts_row(m, cuts, level.fq, level.dq, d, level.f, stage.reverse, j);
     } else {
       for (const int parity : {int(stage.reverse), int(!stage.reverse)})
-        kernels.relax_volume(m, f, d, parity, band, j);
+        kernels.relax_volume_spans(m, f, d, parity, band, j);
     }
   });
 }
@@ -260,24 +265,26 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
   thread_local std::vector<double> of_row;  // of the calling thread, kept from call to call
   of_row.resize(static_cast<std::size_t>(rows));
   double* const at = of_row.data();
-  for_rows_on_threads(0, rows, d.x.columns, [&](int j, int thread) {
+  for_chunks_of_rows(0, rows, d.x.columns, [&](int first, int last, int thread) {
     typename RowScratch<T>::Rows& buffer = scratch.rows(thread);
+    LinearRows<T> linear(d.x.columns);
     auto square = [&](T* row, int columns) {
       const Plane<const T> plane{row, 0, scratch.odd(), columns, 1};
       return kernels.dot(plane, plane, 0);
     };
     auto split = [&](T* row) { return SplitRow<T>{{row, row + scratch.odd()}}; };
-    double sum = 0.0;
-    if (j > 0) {
-      residual_row(kernels, level.membrane, f, d, split(buffer.x[0]), split(buffer.y[0]), j);
-      sum = square(buffer.x[0], d.x.columns) + square(buffer.y[0], d.x.columns);
+    for (int j = first; j < last; ++j) {
+      residual_row(linear, buffer.next, level.membrane, f, d, split(buffer.x[0]),
+                   split(buffer.y[0]), split(buffer.p[0]), j);
+      double sum = 0.0;
+      if (j > 0) sum = square(buffer.x[0], d.x.columns) + square(buffer.y[0], d.x.columns);
+      if (d.p) {
+        if (parts) overwrite_part_row(*level.membrane.special, &f, d, split(buffer.p[0]), parts, j);
+        sum += volume_weight * square(buffer.p[0], d.p.columns);
+        if (parts) sum += volume_weight * part_squares(level.membrane.special->cells(), parts, j);
+      }
+      at[j] = sum;
     }
-    if (d.p) {
-      residual_cell_row(kernels, level.membrane, f, d, split(buffer.p[0]), parts, j);
-      sum += volume_weight * square(buffer.p[0], d.p.columns);
-      if (parts) sum += volume_weight * part_squares(level.membrane.special->cells(), parts, j);
-    }
-    at[j] = sum;
   });
   double total = 0.0;
   for (const double sum : of_row) total += sum;

@@ -6,29 +6,29 @@
 #include <drumhead/kernels/relax.h>
 
 #include "kernel_table.h"
+#include "linear_rows.h"
 #include "special_sweeps.h"
 
 namespace drumhead::kernels {
 
-/// Residual row j of a level into buffers that served other levels: nodes on the fixed boundary get
-/// 0.
+/// Residual rows of a level into buffers that served other levels: nodes and, with pressures, cells
+/// of row j. Rows that do not follow one another cost one row more.
 template <class T>
-void residual_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
+void residual_row(LinearRows<T>& linear, int& next, const Membrane<T>& membrane,
                   const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& x,
-                  const SplitRow<T>& y, int j) {
-  kernels.residual_nodes(membrane, &f, d, x, y, j);
+                  const SplitRow<T>& y, const SplitRow<T>& p, int j) {
+  if (d.p) {
+    if (next != j) linear.begin(membrane, d, j);
+    linear.row(membrane, &f, d, x, y, p, j);
+    next = j + 1;
+  } else if (j > 0) {
+    table<T>().residual_nodes(membrane, &f, d, x, y, j);
+  }
+  if (j == 0) return;
+  // Nodes on the fixed boundary get 0.
   const int last = d.x.columns - 1;
   for (const SplitRow<T>& row : {x, y}) row.half[0][0] = row.half[last & 1][last >> 1] = T(0);
   if (membrane.special) overwrite_near_row(*membrane.special, &f, d, x, y, j);
-}
-
-/// Residual of cell row j: 0 at special cells, that of their parts in `parts`.
-template <class T>
-void residual_cell_row(const KernelTable<T>& kernels, const Membrane<T>& membrane,
-                       const Unknowns<const T>& f, const Unknowns<const T>& d, const SplitRow<T>& p,
-                       T* parts, int j) {
-  kernels.residual_cells(membrane, &f, d, p, j);
-  if (membrane.special) overwrite_part_row(*membrane.special, &f, d, p, parts, j);
 }
 
 /// Room for the residuals of all parts of a level's special cells.
@@ -64,11 +64,12 @@ class Restriction {
     const int ny = level_.d.x.rows - 1, coarse_row = j / 2;
     if (j % 2 == 0 && j + 1 < ny) return;
     typename RowScratch<T>::Rows& rows = scratch_.rows(thread);
+    LinearRows<T> linear(level_.d.x.columns);
     if (coarse_row >= 1 && coarse_row < coarse_.x.rows - 1) {
       const int middle = 2 * coarse_row;
-      const int below = hold(rows, middle - 1), centre = hold(rows, middle);
+      const int below = hold(linear, rows, middle - 1), centre = hold(linear, rows, middle);
       const bool has_above = middle + 1 < ny;
-      const int above = has_above ? hold(rows, middle + 1) : 0;
+      const int above = has_above ? hold(linear, rows, middle + 1) : 0;
       restrict_component(rows.x, below, centre, above, has_above, coarse_.x, coarse_row);
       restrict_component(rows.y, below, centre, above, has_above, coarse_.y, coarse_row);
       if (level_.coarse_special) {
@@ -77,7 +78,7 @@ class Restriction {
         if (has_above && coarse_row + 2 == coarse_.x.rows) keep(rows, above, middle + 1);
       }
     }
-    if (level_.d.p) restrict_cells(rows, coarse_row);
+    if (level_.d.p) restrict_cells(linear, rows, coarse_row);
     if (level_.coarse_special) restrict_parts(rows, coarse_row);
   }
 
@@ -85,11 +86,14 @@ class Restriction {
   SplitRow<T> split(T* row) const { return {{row, row + scratch_.odd()}}; }
   static SplitRow<const T> as_const(const SplitRow<T>& row) { return {{row.half[0], row.half[1]}}; }
 
-  void restrict_cells(const typename RowScratch<T>::Rows& rows, int coarse_row) const {
+  void restrict_cells(LinearRows<T>& linear, typename RowScratch<T>::Rows& rows, int coarse_row) {
     const int first = 2 * coarse_row;
     const bool pair = first + 1 < level_.d.p.rows;
-    for (int n = 0; n <= int(pair); ++n)
-      residual_cell_row(kernels_, level_.membrane, f_, d_, split(rows.p[n]), parts_, first + n);
+    for (int n = 0; n <= int(pair); ++n) {
+      hold(linear, rows, first + n);
+      if (parts_)
+        overwrite_part_row(*level_.membrane.special, &f_, d_, split(rows.p[n]), parts_, first + n);
+    }
     const SplitRow<const T> upper = as_const(split(rows.p[1]));
     kernels_.sum_cells(as_const(split(rows.p[0])), pair ? &upper : nullptr, level_.d.p.columns,
                        coarse_.p, coarse_row);
@@ -109,10 +113,11 @@ class Restriction {
   }
 
   /// Index of the buffer that holds residual row j, computing it if it is not there.
-  int hold(typename RowScratch<T>::Rows& rows, int j) {
+  int hold(LinearRows<T>& linear, typename RowScratch<T>::Rows& rows, int j) {
     const int slot = j & 3;
     if (rows.held[slot] != j) {
-      residual_row(kernels_, level_.membrane, f_, d_, split(rows.x[slot]), split(rows.y[slot]), j);
+      residual_row(linear, rows.next, level_.membrane, f_, d_, split(rows.x[slot]),
+                   split(rows.y[slot]), split(rows.p[j & 1]), j);
       rows.held[slot] = j;
     }
     return slot;

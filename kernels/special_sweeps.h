@@ -76,13 +76,14 @@ void relax_near_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, cons
   });
 }
 
-/// Kaczmarz, weighted by the diagonal, on the parts of a special cell of cell row j, whose values
-/// at the corners are x, y; the last part first if `reverse`.
+/// Kaczmarz, weighted by the diagonal, on the parts of a special cell of cell row j; the last part
+/// first if `reverse`.
 template <class T>
 [[gnu::always_inline]] inline void relax_parts(const SpecialRows<T>& rows,
                                                const Unknowns<const T>& f, const Unknowns<T>& d,
-                                               const CellVisit<T>& visit, bool reverse, int j,
-                                               Four<T> x, Four<T> y) {
+                                               const CellVisit<T>& visit, bool reverse, int j) {
+  const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
+  Four<T> x = at_x.load(), y = at_y.load();
   const Four<T> inverse(visit.inverse);
   const int step = reverse ? -1 : 1;
   int p = reverse ? visit.part_end - 1 : visit.part_begin;
@@ -95,8 +96,8 @@ template <class T>
     y = y + Four<T>(row.by) * move;
     if (rows.soft()) move_curve_of_part(*rows.soft(), p, t, d.curve);
   }
-  CornerValues<T>(d.x, visit.column, j).store(x);
-  CornerValues<T>(d.y, visit.column, j).store(y);
+  at_x.store(x);
+  at_y.store(y);
 }
 
 /// The same on the special cells of column parity `parity` in cell row j.
@@ -104,8 +105,7 @@ template <class T>
 void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, const Unknowns<T>& d,
                     int parity, bool reverse, int j) {
   for (const CellVisit<T>& visit : rows.visits(j, parity))
-    relax_parts(rows, f, d, visit, reverse, j, CornerValues<T>(d.x, visit.column, j).load(),
-                CornerValues<T>(d.y, visit.column, j).load());
+    relax_parts(rows, f, d, visit, reverse, j);
 }
 
 /// Runs a vectorised sweep over the nodes of columns `parity` in row j; near nodes keep their
@@ -127,47 +127,45 @@ void keep_near_row(const SpecialRows<T>& rows, const Unknowns<T>& d, int parity,
   }
 }
 
-/// Runs a sweep while f of the regular cells of columns `parity` in cell row j that have a part as
-/// neighbour carries the jump terms with its dP. `kept`: one value a border.
+/// Runs a sweep while f of the regular cells of cell row j that have a part as neighbour carries
+/// the jump terms with its dP. `kept`: one value a border.
 template <class T, class F>
 void with_border_jumps(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
-                       int parity, int j, T* kept, F&& sweep) {
+                       int j, T* kept, F&& sweep) {
   if (!rows.has_jumps()) return sweep();
-  const auto borders = rows.borders(j, parity);
-  T* const volume = f.p.half(j, parity);
-  for (std::size_t b = 0; b < borders.size(); ++b) {
-    kept[b] = volume[borders[b].half];
-    volume[borders[b].half] -= borders[b].jump * d.listed[borders[b].part];
-  }
+  for (const int parity : {0, 1})
+    for (const BorderJump<T>& border : rows.borders(j, parity)) {
+      T& volume = f.p.half(j, parity)[border.half];
+      *kept++ = volume;
+      volume -= border.jump * d.listed[border.part];
+    }
   sweep();
   // Backwards: of a cell with several parts the first entry kept what it had.
-  for (std::size_t b = borders.size(); b-- > 0;) volume[borders[b].half] = kept[b];
+  for (const int parity : {1, 0}) {
+    const auto borders = rows.borders(j, parity);
+    for (std::size_t b = borders.size(); b-- > 0;) f.p.half(j, parity)[borders[b].half] = *--kept;
+  }
 }
 
-/// The volume rows of the cells of columns `parity` in cell row j, which share no node: a
-/// vectorised sweep over all of them, then the parts of the special ones from what was at their
-/// corners before it. The sweep takes dP of special cells as 0; meanwhile f carries the jump terms
-/// that this leaves out. `kept`: eight values a special cell, one a border.
+/// The volume rows of the cells of cell row j: a vectorised sweep(share) over the regular ones,
+/// then the parts of the special ones, of each those of even columns first unless `reverse`. The
+/// sweep takes dP of special cells as 0; meanwhile f carries the jump terms that this leaves out.
+/// `kept`: one value a border; `share`: 1 for every cell.
 template <class T, class F>
 void relax_volume_and_parts(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
-                            int parity, bool reverse, int j, T* kept, F&& sweep) {
-  const auto visits = rows.visits(j, parity);
-  T* slot = kept;
-  for (const CellVisit<T>& visit : visits) {
-    CornerValues<T>(d.x, visit.column, j).load().store(slot);
-    CornerValues<T>(d.y, visit.column, j).load().store(slot + 4);
-    slot += 8;
-  }
-  with_border_jumps(rows, f, d, parity, j, slot, sweep);
-  T* const p = d.p.half(j, parity);
-  for (const CellVisit<T>& visit : visits) p[visit.column >> 1] = T(0);
+                            bool reverse, int j, T* kept, const SplitRow<T>& share, F&& sweep) {
+  const auto set_share = [&](T value) {
+    for (const int parity : {0, 1})
+      for (const CellVisit<T>& visit : rows.visits(j, parity))
+        share.half[parity][visit.column >> 1] = value;
+  };
+  set_share(T(0));
+  with_border_jumps(rows, f, d, j, kept, [&] { sweep({{share.half[0], share.half[1]}}); });
+  set_share(T(1));
   for (const int row : {j, j + 1})
     for (const int i : rows.loose(row)) d.x.at(i, row) = d.y.at(i, row) = T(0);
-  slot = kept;
-  for (const CellVisit<T>& visit : visits) {
-    relax_parts<T>(rows, f, d, visit, reverse, j, Four<T>(slot), Four<T>(slot + 4));
-    slot += 8;
-  }
+  for (const int parity : {int(reverse), int(!reverse)})
+    relax_part_row<T>(rows, f, d, parity, reverse, j);
 }
 
 /// After the prolonged correction of the coarser level was added to rows j of nodes and cells:

@@ -78,6 +78,18 @@ EdgeWeights<B> edge_weights(L lane, B, const CellsAtNode<T>& p, int k) {
                          lane.load(p.ne + k));
 }
 
+/// A field at a node and at its edge neighbours.
+template <class B>
+struct FiveNodes {
+  B c, w, e, s, n;
+};
+template <class L, class T>
+auto five_nodes(L lane, const AtNode<T>& f, int k) {
+  using B = decltype(lane.load(f.c));
+  return FiveNodes<B>{lane.load(f.c + k), lane.load(f.e + k - 1), lane.load(f.e + k),
+                      lane.load(f.s + k), lane.load(f.n + k)};
+}
+
 /// The operator K + P_H G and Bᵀ at the nodes of one parity in row j, applied to a correction d.
 template <class T, bool kPressure, bool kMuCells>
 struct NodeStencil {
@@ -137,8 +149,9 @@ struct NodeStencil {
     n = half * (nw + ne);
   }
 
-  /// hx, hy = (H d) at the nodes, without the curve forces; inverse = 1/K_ii.
-  template <class L, class B>
+  /// hx, hy = (H d) at the nodes, without the curve forces and, unless kCentre, without their own
+  /// K_ii d; inverse = 1/K_ii.
+  template <bool kCentre = true, class L, class B>
   void apply(L lane, B zero, int k, B& hx, B& hy, B& inverse) const {
     B px = zero, py = zero;
     if constexpr (kPressure) {
@@ -148,26 +161,31 @@ struct NodeStencil {
       px = half * (volume_x(lane, dual, k) + around(lane, primal, dy, k));
       py = half * (volume_y(lane, dual, k) + around(lane, primal, dx, k));
     }
-    const B cx = lane.load(dx.c + k), cy = lane.load(dy.c + k);
-    const B wx = lane.load(dx.e + k - 1), ex = lane.load(dx.e + k), sx = lane.load(dx.s + k),
-            nx = lane.load(dx.n + k);
-    const B wy = lane.load(dy.e + k - 1), ey = lane.load(dy.e + k), sy = lane.load(dy.s + k),
-            ny = lane.load(dy.n + k);
+    inverse =
+        membrane<kCentre>(lane, zero, k, five_nodes(lane, dx, k), five_nodes(lane, dy, k), hx, hy);
+    if constexpr (kPressure) {
+      hx = hx + px;
+      hy = hy - py;
+    }
+  }
+
+  /// hx, hy = (K d) at the nodes where d is x, y, see apply; returns 1/K_ii.
+  template <bool kCentre = true, class L, class B>
+  B membrane(L lane, B zero, int k, const FiveNodes<B>& x, const FiveNodes<B>& y, B& hx,
+             B& hy) const {
     if constexpr (kMuCells) {
       B w, e, s, n;
       edges(lane, zero, k, w, e, s, n);
       const B sum = (w + e) + (s + n);
-      hx = sum * cx - ((w * wx + e * ex) + (s * sx + n * nx));
-      hy = sum * cy - ((w * wy + e * ey) + (s * sy + n * ny));
-      inverse = B(T(1)) / sum;
+      const B centre_x = kCentre ? sum * x.c : zero, centre_y = kCentre ? sum * y.c : zero;
+      hx = centre_x - ((w * x.w + e * x.e) + (s * x.s + n * x.n));
+      hy = centre_y - ((w * y.w + e * y.e) + (s * y.s + n * y.n));
+      return B(T(1)) / sum;
     } else {
-      hx = B(mu) * (B(T(4)) * cx - ((wx + ex) + (sx + nx)));
-      hy = B(mu) * (B(T(4)) * cy - ((wy + ey) + (sy + ny)));
-      inverse = B(T(1) / (T(4) * mu));
-    }
-    if constexpr (kPressure) {
-      hx = hx + px;
-      hy = hy - py;
+      const B beside_x = (x.w + x.e) + (x.s + x.n), beside_y = (y.w + y.e) + (y.s + y.n);
+      hx = kCentre ? B(mu) * (B(T(4)) * x.c - beside_x) : B(-mu) * beside_x;
+      hy = kCentre ? B(mu) * (B(T(4)) * y.c - beside_y) : B(-mu) * beside_y;
+      return B(T(1) / (T(4) * mu));
     }
   }
 
@@ -213,12 +231,42 @@ void correction_diagonals(L lane, B, const Corners<T>& x, const Corners<T>& y, i
   d2y = lane.load(y.n01 + k) - lane.load(y.n10 + k);
 }
 
+/// A value at the two nodes of a cell's west or east side.
+template <class B>
+struct Side {
+  B south, north;
+};
+template <class B, class L, class T>
+Side<B> load_side(L lane, const T* south, std::ptrdiff_t stride) {
+  return {lane.load(south), lane.load(south + stride)};
+}
+template <class B, class L, class T>
+void store_side(L lane, const Side<B>& side, T* south, std::ptrdiff_t stride) {
+  lane.store(side.south, south);
+  lane.store(side.north, south + stride);
+}
+/// Both components.
+template <class B>
+struct Sides {
+  Side<B> x, y;
+};
+template <class B, class L, class T>
+Sides<B> load_sides(L lane, const T* x, const T* y, std::ptrdiff_t stride) {
+  return {load_side<B>(lane, x, stride), load_side<B>(lane, y, stride)};
+}
+
 /// Interior node columns of one parity: k in [begin, end).
 struct Range {
   int begin, end;
 };
 inline Range interior(int columns, int parity) {
   return {parity == 0 ? 1 : 0, half_count(columns - 1, parity)};
+}
+
+/// The part of k in [range.begin, range.end), columns 2k + parity, that is in a span.
+inline Range within(Range range, Span span, int parity) {
+  const int begin = (span.begin - parity + 1) >> 1, end = (span.end - parity + 1) >> 1;
+  return {begin > range.begin ? begin : range.begin, end < range.end ? end : range.end};
 }
 
 }  // namespace drumhead::kernels::DRUMHEAD_ISA_NAMESPACE

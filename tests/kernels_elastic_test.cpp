@@ -84,6 +84,27 @@ TYPED_TEST(KernelsElastic, PressureJumpEqualsTheAssembledEdges) {
       {.pressure_jump = 0.5});
 }
 
+/// Forces of the same dP everywhere cancel, up to its rounding: dP x̂ of four cells.
+TYPED_TEST(KernelsElastic, APressureThatIsTheSameEverywhereRoundsWithItsSize) {
+  using T = TypeParam;
+  constexpr double kPressure = 1e3;
+  fields::for_small_lattices({}, [](const fields::LevelSpec& spec) {
+    if (!spec.pressure) return;
+    RandomLevel<T> level(spec);
+    level.d.x.set([](int, int) { return T(0); });
+    level.d.y.set([](int, int) { return T(0); });
+    level.d.p.set([](int, int) { return T(kPressure); });
+    OwnedUnknowns<T> out = like(level);
+    kernels::apply_hessian<T>(level.membrane(), level.d.view(), out.view());
+    const double size = 4.0 * kPressure * 3.0 * spec.spacing;  // displacements are less than h
+    for (int j = 1; j < spec.ny; ++j)
+      for (int i = 1; i < spec.nx; ++i) {
+        EXPECT_LT(std::abs(out.x.view().at(i, j)), size * std::numeric_limits<T>::epsilon());
+        EXPECT_LT(std::abs(out.y.view().at(i, j)), size * std::numeric_limits<T>::epsilon());
+      }
+  });
+}
+
 TYPED_TEST(KernelsElastic, LinearResidualMayOverwriteItsRightHandSide) {
   using T = TypeParam;
   fields::for_small_lattices({}, [](const fields::LevelSpec& spec) {

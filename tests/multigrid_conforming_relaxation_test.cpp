@@ -50,13 +50,10 @@ class DenseRelaxation {
       });
     near_nodes();
     for (const bool reverse : {false, true})
-      for (const int rows : {0, 1})
-        for (const int columns : {0, 1}) volume_rows(rows != reverse, columns != reverse, reverse);
+      for (const int rows : {0, 1}) volume_rows(rows != reverse, reverse, true);
     near_nodes();
     for (const bool reverse : {false, true})
-      for (const int rows : {0, 1})
-        for (const int columns : {0, 1})
-          volume_rows(rows != reverse, columns != reverse, reverse, false);
+      for (const int rows : {0, 1}) volume_rows(rows != reverse, reverse, false);
     return d_;
   }
 
@@ -81,19 +78,25 @@ class DenseRelaxation {
           if (scene_.cells().curve_cell[n][1] == j) gauss_seidel(number_.curve[n]);
       }
   }
-  void volume_rows(bool row_parity, bool column_parity, bool reverse, bool with_regular = true) {
+  /// Row by row the regular cells, then the parts, of each those of even columns first unless
+  /// `reverse`.
+  void volume_rows(bool row_parity, bool reverse, bool with_regular) {
     for (int j = row_parity; j < kNy; j += 2)
-      for (int i = column_parity; i < kNx; i += 2) {
-        const int c = scene_.cells().find_cell(i, j);
-        if (c < 0) {
-          if (with_regular) kaczmarz(number_.cell[std::size_t(j * kNx + i)], true);
-          continue;
-        }
-        const int begin = scene_.cells().part_begin[std::size_t(c)],
-                  end = scene_.cells().part_begin[std::size_t(c) + 1];
-        for (int m = 0; m < end - begin; ++m)
-          kaczmarz(number_.first_part + (reverse ? end - 1 - m : begin + m), false);
-      }
+      for (const bool regular : {true, false})
+        for (const bool columns : {reverse, !reverse})
+          for (int i = int(columns); i < kNx; i += 2)
+            if (!regular)
+              parts(i, j, reverse);
+            else if (with_regular && !scene_.special(i, j))
+              kaczmarz(number_.cell[std::size_t(j * kNx + i)], true);
+  }
+  void parts(int i, int j, bool reverse) {
+    const int c = scene_.cells().find_cell(i, j);
+    if (c < 0) return;
+    const int begin = scene_.cells().part_begin[std::size_t(c)],
+              end = scene_.cells().part_begin[std::size_t(c) + 1];
+    for (int m = 0; m < end - begin; ++m)
+      kaczmarz(number_.first_part + (reverse ? end - 1 - m : begin + m), false);
   }
   /// Regular rows take 1/K_ii = 1/4 for all their corners but those on the boundary.
   void kaczmarz(int p, bool regular) {

@@ -44,8 +44,10 @@ class RowScratch {
     T* x[4];
     T* y[4];
     T* p[2];
-    T* kept;      ///< values of near nodes while a vectorised sweep passes over them
-    int held[4];  ///< which residual row x[r], y[r] hold, −1: none
+    T* kept;            ///< values of near nodes while a vectorised sweep passes over them
+    SplitRow<T> share;  ///< 1 for every cell of a row, between sweeps
+    int held[4];        ///< which residual row x[r], y[r] hold, −1: none
+    int next;           ///< the residual row that follows the last one made, −1: none
   };
   Rows& rows(int thread) { return rows_[std::size_t(thread)]; }
   std::ptrdiff_t odd() const { return odd_; }

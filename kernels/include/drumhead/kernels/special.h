@@ -199,6 +199,13 @@ class SpecialRows {
               end = border_begin_[std::size_t(2 * j + parity) + 1];
     return {border_.data() + begin, std::size_t(end - begin)};
   }
+  /// Whether cell row j has neither special cells nor cells that their relaxation concerns.
+  bool regular_row(int j) const {
+    const auto none = [](const Columns& some) { return some.first == some.last; };
+    const bool borders_none = !has_jumps_ || (borders(j, 0).empty() && borders(j, 1).empty());
+    return visits(j, 0).empty() && visits(j, 1).empty() && none(loose(j)) && none(loose(j + 1)) &&
+           borders_none;
+  }
   int near_count() const { return near_begin_.back(); }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
   const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
