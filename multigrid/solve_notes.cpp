@@ -2,6 +2,7 @@
 #include "solve_notes.h"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,11 @@ void note_changed_area(const WarpProblem& problem, SolveReport& report) {
   const grid::CurvePair* worst = nullptr;
   double change = kNotableArea;
   for (const grid::CurvePair& curve : problem.curves) {
-    const double before = std::abs(enclosed_area(curve.source));
-    if (before == 0.0 || !std::isinf(curve.weight)) continue;
+    const double before = std::abs(enclosed_area(curve.source)),
+                 length = grid::arc_length(curve.source);
+    // The areas of loops that cross cancel, and a flat one has none to compare with.
+    const bool flat = before < 0.01 * length * length / (4.0 * std::numbers::pi);
+    if (flat || !std::isinf(curve.weight)) continue;
     const double gain = std::abs(enclosed_area(curve.target)) / before - 1.0;
     if (std::abs(gain) <= std::abs(change)) continue;
     change = gain;

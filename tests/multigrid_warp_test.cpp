@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The façade: what solve() refuses, and with which words; how far it says it is, and how it stops.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -214,6 +216,27 @@ TEST(WarpNotes, NameTheClosedCurveWhoseAreaKappaResists) {
   EXPECT_TRUE(std::ranges::any_of(notes(1e4), about_areas));
   problem.curves[1].weight = 1e3;
   EXPECT_TRUE(std::ranges::none_of(notes(1e4), about_areas));
+}
+
+/// Two squares that touch, one walked round against the other: their areas cancel.
+TEST(WarpNotes, DoNotCompareAreasThatCancel) {
+  const auto squares = [](double side) {
+    const grid::Point middle{24.3, 24.3};
+    const std::array<grid::Point, 8> way{
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}, {0, -side}, {-side, -side}, {-side, 0}}};
+    std::vector<grid::CubicBezier> chain;
+    for (std::size_t n = 0; n < way.size(); ++n)
+      chain.push_back(grid::straight(middle + way[n], middle + way[(n + 1) % way.size()]));
+    return chain;
+  };
+  WarpProblem problem{.lattice = grid::unit_lattice(48, 48), .material = {}, .curves = {}};
+  problem.curves = {{.name = "eight", .source = squares(10.0), .target = squares(12.0)}};
+  problem.material.kappa = 1e4;
+  const Solution solution = solve(problem);
+  EXPECT_GT(solution.report.energy.volume, solution.report.energy.elastic);
+  EXPECT_TRUE(std::ranges::none_of(solution.report.notes, [](const std::string& note) {
+    return note.find(" encloses ") != std::string::npos;
+  }));
 }
 
 }  // namespace
