@@ -9,11 +9,13 @@ template <class T>
 void parts_residual(const LevelSystem<T>& level, double* residual) {
   const SpecialRows<T>& rows = *level.membrane.special;
   const Unknowns<const T> d = level.d;
-  for_special(rows.cells(), [&](int n, int i, int j) {
-    const Four<T> x = CornerValues<const T>(d.x, i, j).load(),
-                  y = CornerValues<const T>(d.y, i, j).load();
-    for_parts(rows.cells(), n, [&](int p) {
-      residual[p] = double(level.f.listed[p] - apply_part<T>(rows, d, x, y, p, i, j));
+  with_kind(rows, [&](auto soft, auto jumps) {
+    for_special(rows.cells(), [&](int n, int i, int j) {
+      const PartRowView<T, soft.value, jumps.value> view(rows, d, j);
+      const Four<T> x = CornerValues<const T>(d.x, i, j).load(),
+                    y = CornerValues<const T>(d.y, i, j).load();
+      for_parts(rows.cells(), n,
+                [&](int p) { residual[p] = double(level.f.listed[p] - view.apply(x, y, p, i)); });
     });
   });
 }

@@ -154,7 +154,7 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
   for (int j = 1; j + 1 < m.ux.rows; ++j) {
     for (const int i : rows.known(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-      const NearRow<T>& row = rows.near(n);
+      const NearNode& row = rows.near_node(n);
       Vector2<T> sum{T(0), T(0)};
       for (int q = 0; q < 4; ++q) {
         if (!(row.regular >> q & 1)) continue;

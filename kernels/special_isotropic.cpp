@@ -154,8 +154,8 @@ void add_springs(const SpecialRows<T>& rows, std::vector<BlockRow<T>>& block) {
     for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k) {
       const HeldNode<T>& node = cells.held[std::size_t(k)];
       if (node.known()) continue;
-      while (n < rows.near_begin(j + 1) && rows.near(n).column < node.place) ++n;
-      if (n == rows.near_begin(j + 1) || rows.near(n).column != node.place) continue;
+      while (n < rows.near_begin(j + 1) && rows.near_node(n).column < node.place) ++n;
+      if (n == rows.near_begin(j + 1) || rows.near_node(n).column != node.place) continue;
       block[std::size_t(n)].xx[4] += node.stiffness;
       block[std::size_t(n)].yy[4] += node.stiffness;
     }
@@ -173,7 +173,7 @@ void SpecialRows<T>::list_fringe(int rows) {
     for (const int row : {j, j + 1}) {
       if (row == 0 || row + 1 == rows) continue;
       for (int n = near_begin(row); n < near_begin(row + 1); ++n) {
-        const NearRow<T>& node = near(n);
+        const NearNode& node = near_node(n);
         for (const int east : {0, 1}) {  // of the node, seen from the cell
           const int corner = east + 2 * (row - j), q = 3 - corner;
           if (!(node.regular >> q & 1)) continue;
@@ -208,7 +208,7 @@ void special_isotropic_force(const Membrane<T>& m, const Unknowns<T>& f) {
   for (int j = 1; j + 1 < m.ux.rows; ++j) {
     clear_known_row(rows, f, j);
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n)
-      f.x.at(rows.near(n).column, j) = f.y.at(rows.near(n).column, j) = T(0);
+      f.x.at(rows.near_node(n).column, j) = f.y.at(rows.near_node(n).column, j) = T(0);
   }
   add_spring_force(rows.cells(), f);
   // `add`(vertex, x, y): to the force on one of the cell's nodes.
@@ -292,7 +292,7 @@ void overwrite_block_row(const SpecialRows<T>& rows, const Unknowns<const T>& d,
                          const Unknowns<T>& out, int j) {
   clear_known_row(rows, out, j);
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-    const int i = rows.near(n).column;
+    const int i = rows.near_node(n).column;
     const Vector2<T> image = block_times(rows, n, d, i, j);
     out.x.at(i, j) = image.x;
     out.y.at(i, j) = image.y;
@@ -302,7 +302,7 @@ void overwrite_block_row(const SpecialRows<T>& rows, const Unknowns<const T>& d,
 template <class T>
 void overwrite_diagonal_row(const SpecialRows<T>& rows, const Plane<T>* block, int j) {
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-    const int i = rows.near(n).column;
+    const int i = rows.near_node(n).column;
     const BlockRow<T>& row = rows.block(n);
     block[0].at(i, j) = row.xx[4];
     block[1].at(i, j) = row.xy[4];
@@ -330,7 +330,7 @@ void relax_block_row(const Membrane<T>& m, const Unknowns<const T>& f, const Unk
                      int j) {
   const SpecialRows<T>& rows = *m.special;
   for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-    const int i = rows.near(n).column;
+    const int i = rows.near_node(n).column;
     const Vector2<T> image = block_times<T>(rows, n, d, i, j);
     const T x = f.x.at(i, j) - image.x, y = f.y.at(i, j) - image.y;
     const T xy = m.inverse_block[1].at(i, j);

@@ -2,6 +2,7 @@
 #pragma once
 // Rows of near nodes and parts times a correction, from the rows that SpecialRows stores.
 #include <algorithm>
+#include <type_traits>
 
 #include <drumhead/kernels/special.h>
 
@@ -22,16 +23,6 @@ class Four {
   }
   explicit Four(T a) : Four(a, a, a, a) {}
   explicit Four(const T* at) { __builtin_memcpy(v_, at, sizeof v_); }
-  /// Two from one place.
-  Four(const T* first, T c, T d) {
-    using Two [[gnu::vector_size(2 * sizeof(T))]] = T;
-    Two one, two{c, d};
-    __builtin_memcpy(&one, first, sizeof one);
-    if constexpr (kVectors == 1)
-      v_[0] = __builtin_shufflevector(one, two, 0, 1, 2, 3);
-    else
-      v_[0] = one, v_[1] = two;
-  }
   friend Four operator*(Four a, const Four& b) {
     for (int n = 0; n < kVectors; ++n) a.v_[n] *= b.v_[n];
     return a;
@@ -47,23 +38,21 @@ class Four {
   T operator[](int n) const { return v_[n / kLanes][n % kLanes]; }
   T sum() const { return ((*this)[0] + (*this)[2]) + ((*this)[1] + (*this)[3]); }
   void store(T* at) const { __builtin_memcpy(at, v_, sizeof v_); }
+  /// a.sum() and b.sum().
+  friend Vector2<T> sums(const Four& a, const Four& b) {
+    if constexpr (kVectors == 1) {
+      const Vector half = __builtin_shufflevector(a.v_[0], b.v_[0], 0, 4, 1, 5) +
+                          __builtin_shufflevector(a.v_[0], b.v_[0], 2, 6, 3, 7);
+      return {half[0] + half[2], half[1] + half[3]};
+    } else {
+      return {a.sum(), b.sum()};
+    }
+  }
 
  private:
   using Vector [[gnu::vector_size(16)]] = T;
   static constexpr int kLanes = int(16 / sizeof(T)), kVectors = 4 / kLanes;
   Vector v_[kVectors];
-};
-
-/// The eight neighbours of a node in the order of NearRow, and the node.
-template <class T>
-struct Neighbours {
-  Four<T> sides, rest;
-  T centre;
-  /// `side`, `middle`: the node's western neighbour and itself.
-  Neighbours(const T* side, const T* middle, std::ptrdiff_t stride)
-      : sides(side - stride, side[0], side[1]),
-        rest(side + stride, middle[-stride], middle[stride]),
-        centre(*middle) {}
 };
 
 /// Node row j of a correction as its near nodes see it; x and y are laid out alike.
@@ -74,46 +63,53 @@ class NearRowView {
       : x_(d.x.data + j * d.x.stride),
         y_(d.y.data + j * d.y.stride),
         stride_(d.x.stride),
-        odd_(d.x.odd),
         p_(d.p ? d.p.data + j * d.p.stride : nullptr),
         p_stride_(d.p.stride),
-        p_odd_(d.p.odd),
         listed_(d.listed) {}
 
-  /// H d without curve nodes and further parts.
+  /// H d without diagonals, curve nodes and further parts.
   [[gnu::always_inline]] Vector2<T> apply(const NearRow<T>& row) const {
-    // By masks: columns' parities could not be predicted.
-    const std::ptrdiff_t odd = -std::ptrdiff_t(row.column & 1), half = row.column >> 1;
-    const std::ptrdiff_t middle = half + (odd & odd_), side = half + (~odd & (odd_ - 1));
-    const Neighbours<T> x(x_ + side, x_ + middle, stride_), y(y_ + side, y_ + middle, stride_);
-    const Four<T> k(row.k), l(row.k + 4);
-    Four<T> hx = k * x.sides + l * x.rest, hy = k * y.sides + l * y.rest;
+    const Four<T> x = sides(x_, row), y = sides(y_, row), k(row.k);
+    Four<T> hx = k * x, hy = k * y;
     if (p_) {
-      const Four<T> g(row.g), h(row.g + 4);
-      const Four<T> p =
-          pressures(row, p_ + half + (~odd & (p_odd_ - 1)), p_ + half + (odd & p_odd_));
-      hx = (hx + (g * y.sides + h * y.rest)) + Four<T>(row.bx) * p;
-      hy = (hy - (g * x.sides + h * x.rest)) + Four<T>(row.by) * p;
+      const Four<T> g(row.g), p = pressures(row);
+      hx = (hx + g * y) + Four<T>(row.bx) * p;
+      hy = (hy - g * x) + Four<T>(row.by) * p;
     }
-    const T own = row.k[kStencilPlaces - 1];
-    return {hx.sum() + own * x.centre, hy.sum() + own * y.centre};
+    const Vector2<T> sum = sums(hx, hy);
+    return {sum.x + row.own * x_[row.place], sum.y + row.own * y_[row.place]};
+  }
+  /// What the nodes south-west, south-east, north-west and north-east add to that.
+  [[gnu::always_inline]] void add_diagonals(const NearRow<T>& row, const DiagonalRow<T>& diagonals,
+                                            Vector2<T>& product) const {
+    const T *south = x_ + row.west - stride_, *north = x_ + row.west + stride_;
+    const Four<T> x(south[0], south[1], north[0], north[1]);
+    south = y_ + row.west - stride_, north = y_ + row.west + stride_;
+    const Four<T> y(south[0], south[1], north[0], north[1]);
+    const Four<T> k(diagonals.k), g(diagonals.g);
+    const Vector2<T> sum = sums(k * x + g * y, k * y - g * x);
+    product = {product.x + sum.x, product.y + sum.y};
   }
 
  private:
-  /// The pressures of the cells sw, se, nw, ne, `west` and `east` those of the row, or of the parts
-  /// that the node belongs to.
-  [[gnu::always_inline]] Four<T> pressures(const NearRow<T>& row, const T* west,
-                                           const T* east) const {
-    const T* at[4] = {west - p_stride_, east - p_stride_, west, east};
-    for (int q = 0; q < 4; ++q)
-      if (row.part[q] >= 0) at[q] = listed_ + row.part[q];
-    return {*at[0], *at[1], *at[2], *at[3]};
+  /// The values west, east, south and north of a node.
+  Four<T> sides(const T* values, const NearRow<T>& row) const {
+    const T *west = values + row.west, *middle = values + row.place;
+    return {west[0], west[1], middle[-stride_], middle[stride_]};
   }
-
+  /// The pressures of the cells sw, se, nw, ne or of the parts that the node belongs to.
+  [[gnu::always_inline]] Four<T> pressures(const NearRow<T>& row) const {
+    T p[4];
+    for (int q = 0; q < 4; ++q) {
+      const std::ptrdiff_t part = row.part[q];
+      p[q] = part >= 0 ? listed_[part] : (q < 2 ? p_ - p_stride_ : p_)[-1 - part];
+    }
+    return {p[0], p[1], p[2], p[3]};
+  }
   const T *x_, *y_;
-  std::ptrdiff_t stride_, odd_;
+  std::ptrdiff_t stride_;
   const T* p_;
-  std::ptrdiff_t p_stride_, p_odd_;
+  std::ptrdiff_t p_stride_;
   const T* listed_;
 };
 
@@ -134,11 +130,13 @@ template <class T, class F>
 [[gnu::always_inline]] inline void for_near_products(const SpecialRows<T>& rows,
                                                      const Unknowns<const T>& d, int j, F&& visit) {
   const NearRowView<T> view(d, j);
-  const int end = rows.near_begin(j + 1);
   const bool soft = rows.soft() || rows.has_further();
+  const int end = rows.near_begin(j + 1);
   for (int n = rows.near_begin(j); n < end; ++n) {
     const NearRow<T>& row = rows.near(n);
     Vector2<T> product = view.apply(row);
+    if (const int diagonal = rows.near_node(n).diagonal; diagonal >= 0)
+      view.add_diagonals(row, rows.diagonal(diagonal), product);
     if (soft) add_soft_to_near(rows, n, d, product);
     visit(row, product);
   }
@@ -164,45 +162,72 @@ struct CornerValues {
   }
 };
 
-/// What the jumps between part p of special cell (i, j) and all its neighbours but the first across
-/// each side add to its row: the neighbours' share.
+/// What the jumps between part p and all its neighbours but the first across each side add to its
+/// row: the neighbours' share. `parts`: dP of all parts.
 template <class T>
-T further_jumps(const SpecialRows<T>& rows, const Unknowns<const T>& d, int p) {
+[[gnu::noinline]] T further_jumps(const SpecialRows<T>& rows, const T* parts, int p) {
   const SpecialCells<T>& cells = rows.cells();
   T sum = T(0);
   const auto begin = cells.neighbour.begin() + cells.neighbour_begin[std::size_t(p)],
              end = cells.neighbour.begin() + cells.neighbour_begin[std::size_t(p) + 1];
   for (auto other = begin; other != end; ++other)
     if (std::any_of(begin, other, [=](const PartNeighbour& n) { return n.side == other->side; }))
-      sum += rows.jump(int(other - cells.neighbour.begin())) * d.listed[other->part];
+      sum += rows.jump(int(other - cells.neighbour.begin())) * parts[other->part];
   return sum;
 }
 
-/// The same of all neighbours, of a part in cell row j.
-template <class T>
-[[gnu::always_inline]] inline T neighbour_jumps(const SpecialRows<T>& rows,
-                                                const Unknowns<const T>& d, int p, int i, int j) {
-  const PartJumps<T>& row = rows.jumps(p);
-  const std::ptrdiff_t odd = i & 1, half = i >> 1;
-  const T* const cells = d.p.data + (j * d.p.stride + half);
-  const T *own = cells + odd * d.p.odd, *east = cells + ((1 - odd) * d.p.odd + odd);
-  const T* at[4] = {own - d.p.stride, east, own + d.p.stride, east - 1};
-  for (int s = 0; s < 4; ++s)
-    if (row.part[s] >= 0) at[s] = d.listed + row.part[s];
-  const T sum = (Four<T>(row.jump) * Four<T>(*at[0], *at[1], *at[2], *at[3])).sum();
-  return row.more ? sum + further_jumps(rows, d, p) : sum;
+/// Runs body(kSoft, kJumps as std::bool_constant): whether any curve is soft, and whether parts are
+/// joined to their neighbours.
+template <class T, class F>
+void with_kind(const SpecialRows<T>& rows, F&& body) {
+  using std::false_type, std::true_type;
+  if (rows.soft())
+    rows.has_jumps() ? body(true_type{}, true_type{}) : body(true_type{}, false_type{});
+  else
+    rows.has_jumps() ? body(false_type{}, true_type{}) : body(false_type{}, false_type{});
 }
 
-/// Row of part p of special cell (i, j), times d, whose values at the cell's corners are x, y.
-template <class T>
-[[gnu::always_inline]] inline T apply_part(const SpecialRows<T>& rows, const Unknowns<const T>& d,
-                                           const Four<T>& x, const Four<T>& y, int p, int i,
-                                           int j) {
-  const PartRow<T>& row = rows.part(p);
-  T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
-              (row.compliance + row.jumps) * d.listed[p];
-  if (rows.soft()) product += curve_of_part(*rows.soft(), p, d.curve);
-  return rows.has_jumps() ? product + neighbour_jumps(rows, d, p, i, j) : product;
-}
+/// Cell row j of a correction as its parts see it.
+template <class T, bool kSoft, bool kJumps>
+class PartRowView {
+ public:
+  PartRowView(const SpecialRows<T>& rows, const Unknowns<const T>& d, int j)
+      : rows_(rows),
+        p_(d.p.data + j * d.p.stride),
+        stride_(d.p.stride),
+        odd_(d.p.odd),
+        listed_(d.listed),
+        curve_(d.curve) {}
+
+  /// Row of part p of the special cell in column i, times the correction, whose values at the
+  /// cell's corners are x, y.
+  [[gnu::always_inline]] T apply(const Four<T>& x, const Four<T>& y, int p, int i) const {
+    const PartRow<T>& row = rows_.part(p);
+    T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
+                (row.compliance + row.jumps) * listed_[p];
+    if constexpr (kSoft) product += curve_of_part(*rows_.soft(), p, curve_);
+    if constexpr (kJumps) product += neighbour_jumps(p, i);
+    return product;
+  }
+
+ private:
+  /// What the jumps add: the neighbours' share.
+  [[gnu::always_inline]] T neighbour_jumps(int p, int i) const {
+    const PartJumps<T>& row = rows_.jumps(p);
+    const std::ptrdiff_t odd = i & 1, half = i >> 1;
+    const T* const cells = p_ + half;
+    const T *own = cells + odd * odd_, *east = cells + ((1 - odd) * odd_ + odd);
+    const T* at[4] = {own - stride_, east, own + stride_, east - 1};
+    for (int s = 0; s < 4; ++s)
+      if (row.part[s] >= 0) at[s] = listed_ + row.part[s];
+    const T sum = (Four<T>(row.jump) * Four<T>(*at[0], *at[1], *at[2], *at[3])).sum();
+    return row.more ? sum + further_jumps(rows_, listed_, p) : sum;
+  }
+
+  const SpecialRows<T>& rows_;
+  const T* p_;
+  std::ptrdiff_t stride_, odd_;
+  const T *listed_, *curve_;
+};
 
 }  // namespace drumhead::kernels

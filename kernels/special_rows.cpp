@@ -14,14 +14,13 @@
 namespace drumhead::kernels {
 namespace {
 
-/// Place in a NearRow of corner `other` of a cell, seen from its corner `own`.
+/// Place of corner `other` of a cell, seen from its corner `own`: 0…3 in a NearRow, 4…7 in a
+/// DiagonalRow, kOwn the node itself.
+constexpr std::size_t kDiagonal = 4, kOwn = 8;
 std::size_t stencil_place(int own, int other) {
-  constexpr std::array<std::size_t, kStencilPlaces> kPlace{0, 6, 1, 2, 8, 3, 4, 7, 5};
+  constexpr std::array<std::size_t, 9> kPlace{4, 2, 5, 0, kOwn, 1, 6, 3, 7};
   return kPlace[std::size_t(4 + ((other & 1) - (own & 1)) + 3 * ((other >> 1) - (own >> 1)))];
 }
-
-/// Place of the node itself.
-constexpr std::size_t kOwn = kStencilPlaces - 1;
 
 /// Corners of a cell that follow and precede one in the sense 00, 10, 11, 01.
 constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
@@ -33,20 +32,6 @@ constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
 // 21.
 constexpr double kPartJump = 4.0;
 
-/// The corner of cell q of sw, se, nw, ne that is the node itself.
-constexpr int corner_towards_node(int q) { return 3 - q; }
-/// The quadrant of a node in which the cell lies whose corner it is.
-constexpr int quadrant(int corner) { return 3 - corner; }
-
-/// Sorts the columns that were listed since row j began by parity and halves them.
-void halve(std::vector<int>& columns, std::vector<int>& begin, int j) {
-  const auto row = columns.begin() + begin[2 * std::size_t(j)];
-  const auto odd = std::stable_partition(row, columns.end(), [](int i) { return i % 2 == 0; });
-  begin[2 * std::size_t(j) + 1] = int(odd - columns.begin());
-  begin[2 * std::size_t(j) + 2] = int(columns.size());
-  std::for_each(row, columns.end(), [](int& i) { i /= 2; });
-}
-
 /// Stiffness of the spring of lattice node (i, j), which is not known.
 template <class T>
 T spring(const SpecialCells<T>& cells, int i, int j) {
@@ -55,23 +40,14 @@ T spring(const SpecialCells<T>& cells, int i, int j) {
   return T(0);
 }
 
-/// visit(corner, part) for the corners of cell `n` that are a part's vertex.
-template <class T, class F>
-void for_corner_vertices(const SpecialCells<T>& cells, int n, F&& visit) {
-  for_parts(cells, n, [&](int p) {
-    for (int v = cells.vertex_begin[std::size_t(p)]; v < cells.vertex_begin[std::size_t(p) + 1];
-         ++v)
-      if (const int corner = cells.vertex[std::size_t(v)].vertex; corner < kFirstCrossing)
-        visit(corner, p);
-  });
-}
-
 }  // namespace
 
 template <class T>
 SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& membrane)
     : cells_(&cells), part_(std::size_t(cells.parts())) {
   list_near_nodes(membrane.ux.columns, membrane.ux.rows);
+  list_diagonals();
+  near_.resize(near_node_.size());
   add_stiffness(membrane);
   list_visits();
   if (isotropic(membrane.law.model))
@@ -82,114 +58,9 @@ SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& mem
 }
 
 template <class T>
-void SpecialRows<T>::list_near_nodes(int columns, int rows) {
-  struct Corner {
-    int column, cell, corner;  // cell −1: a known node
-  };
-  corner_.assign(4 * std::size_t(cells_->size()), -1);
-  near_begin_.assign(std::size_t(rows) + 1, 0);
-  known_begin_ = loose_begin_ = near_begin_;
-  near_half_begin_.assign(2 * std::size_t(rows) + 1, 0);
-  std::vector<Corner> corners;
-  for (int j = 1; j + 1 < rows; ++j) {
-    corners.clear();
-    for (const int row : {j - 1, j})
-      for (int n = cells_->row_begin[std::size_t(row)]; n < cells_->row_begin[std::size_t(row) + 1];
-           ++n)
-        for (const int east : {0, 1})
-          corners.push_back({cells_->column[std::size_t(n)] + east, n, 2 * (j - row) + east});
-    for (int k = cells_->held_begin[std::size_t(j)]; k < cells_->held_begin[std::size_t(j) + 1];
-         ++k)
-      if (const HeldNode<T>& node = cells_->held[std::size_t(k)]; node.known())
-        corners.push_back({node.place, -1, 0});
-      else
-        corners.push_back({node.place, cells_->size(), 0});
-    std::ranges::sort(corners, {}, [](const Corner& c) { return std::pair(c.column, c.cell); });
-    for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
-      const int column = corners[first].column;
-      int regular = 15;
-      for (end = first; end < corners.size() && corners[end].column == column; ++end)
-        if (corners[end].cell >= 0 && corners[end].cell < cells_->size())
-          regular &= ~(1 << corner_towards_node(corners[end].corner));
-      if (column == 0 || column + 1 == columns) continue;
-      near_half_.push_back(column);
-      if (corners[first].cell < 0) {
-        known_.push_back(column);
-        if (regular != 0) loose_.push_back(column);
-        continue;
-      }
-      for (std::size_t c = first; c < end && corners[c].cell < cells_->size(); ++c)
-        corner_[4 * std::size_t(corners[c].cell) + std::size_t(corners[c].corner)] =
-            int(near_.size());
-      near_.push_back({.column = column, .regular = regular});
-    }
-    halve(near_half_, near_half_begin_, j);
-    near_begin_[std::size_t(j) + 1] = int(near_.size());
-    known_begin_[std::size_t(j) + 1] = int(known_.size());
-    loose_begin_[std::size_t(j) + 1] = int(loose_.size());
-  }
-  near_begin_[std::size_t(rows)] = int(near_.size());
-  known_begin_[std::size_t(rows)] = int(known_.size());
-  loose_begin_[std::size_t(rows)] = int(loose_.size());
-  for (const int last : {2 * rows - 1, 2 * rows})
-    near_half_begin_[std::size_t(last)] = int(near_half_.size());
-}
-
-template <class T>
-void SpecialRows<T>::list_visits() {
-  const SpecialCells<T>& cells = *cells_;
-  visit_begin_.assign(1, 0);
-  for (std::size_t j = 0; j + 1 < cells.row_begin.size(); ++j)
-    for (const int parity : {0, 1}) {
-      for (int n = cells.row_begin[j]; n < cells.row_begin[j + 1]; ++n) {
-        if ((cells.column[std::size_t(n)] & 1) != parity) continue;
-        CellVisit<T>& visit = visit_.emplace_back();
-        visit.column = cells.column[std::size_t(n)];
-        visit.part_begin = cells.part_begin[std::size_t(n)];
-        visit.part_end = cells.part_begin[std::size_t(n) + 1];
-        for (int c = 0; c < 4; ++c)
-          if (const int node = unknown_corner(n, c); node >= 0)
-            visit.inverse[c] = near(node).inverse;
-      }
-      visit_begin_.push_back(int(visit_.size()));
-    }
-}
-
-template <class T>
-void SpecialRows<T>::list_borders() {
-  border_begin_.assign(1, 0);
-  border_.clear();
-  for (std::size_t j = 0; j + 1 < cells_->border_begin.size(); ++j)
-    for (const int parity : {0, 1}) {
-      for (int b = cells_->border_begin[j]; b < cells_->border_begin[j + 1]; ++b)
-        if (const PartBorder& border = cells_->border[std::size_t(b)];
-            (border.column & 1) == parity)
-          border_.push_back({border.column >> 1, border.part, border.neighbour});
-      border_begin_.push_back(int(border_.size()));
-    }
-}
-
-template <class T>
-void SpecialRows<T>::list_couplings() {
-  std::vector<std::pair<int, int>> further;  // near node, part
-  for (int n = 0; n < cells_->size(); ++n)
-    for_corner_vertices(*cells_, n, [&](int corner, int p) {
-      const int node = unknown_corner(n, corner);
-      if (node < 0) return;
-      int& part = near_[std::size_t(node)].part[quadrant(corner)];
-      if (part < 0)
-        part = p;
-      else
-        further.push_back({node, p});
-    });
-  if (further.empty()) return;
-  std::ranges::sort(further);
-  further_begin_.assign(near_.size() + 1, 0);
-  for (const auto& [node, p] : further) {
-    ++further_begin_[std::size_t(node) + 1];
-    further_.push_back({.part = p});
-  }
-  std::partial_sum(further_begin_.begin(), further_begin_.end(), further_begin_.begin());
+DiagonalRow<T>* SpecialRows<T>::diagonals_of(int near) {
+  const int n = near_node(near).diagonal;
+  return n >= 0 ? &diagonal_[std::size_t(n)] : nullptr;
 }
 
 template <class T>
@@ -204,40 +75,56 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
         if (triangle.vertex[a] >= kFirstCrossing) continue;
         const int node = unknown_corner(n, triangle.vertex[a]);
         if (node < 0) continue;
-        for (std::size_t b = 0; b < 3; ++b)
-          if (triangle.vertex[b] < kFirstCrossing)
-            near_[std::size_t(node)].k[stencil_place(triangle.vertex[a], triangle.vertex[b])] +=
-                mu * triangle.area *
-                (triangle.gx[a] * triangle.gx[b] + triangle.gy[a] * triangle.gy[b]);
+        NearRow<T>& row = near_[std::size_t(node)];
+        DiagonalRow<T>* const diagonals = diagonals_of(node);
+        for (std::size_t b = 0; b < 3; ++b) {
+          if (triangle.vertex[b] >= kFirstCrossing) continue;
+          const std::size_t place = stencil_place(triangle.vertex[a], triangle.vertex[b]);
+          const T k = mu * triangle.area *
+                      (triangle.gx[a] * triangle.gx[b] + triangle.gy[a] * triangle.gy[b]);
+          if (place == kOwn)
+            row.own += k;
+          else if (place < kDiagonal)
+            row.k[place] += k;
+          else if (diagonals)
+            diagonals->k[place - kDiagonal] += k;
+        }
       }
     }
   });
   for (int j = 1; j + 1 < membrane.ux.rows; ++j)
     for (int n = near_begin(j); n < near_begin(j + 1); ++n) {
+      const NearNode& node = near_node(n);
       NearRow<T>& row = near_[std::size_t(n)];
+      row.place = row_place(membrane.ux, node.column);
+      row.west = row_place(membrane.ux, node.column - 1);
       for (int q = 0; q < 4; ++q) {
-        if (!(row.regular >> q & 1)) continue;
+        if (!(node.regular >> q & 1)) continue;
         const int own = corner_towards_node(q);
-        const T mu = mu_at(membrane, row.column - (own & 1), j - (own >> 1));
-        row.k[kOwn] += mu;
+        const T mu = mu_at(membrane, node.column - (own & 1), j - (own >> 1));
+        row.own += mu;
         row.k[stencil_place(own, own ^ 1)] -= T(0.5) * mu;
         row.k[stencil_place(own, own ^ 2)] -= T(0.5) * mu;
       }
-      row.k[kOwn] += spring(*cells_, row.column, j);
-      row.inverse = T(1) / row.k[kOwn];
+      row.own += spring(*cells_, node.column, j);
+      row.inverse = T(1) / row.own;
     }
 }
 
 template <class T>
 void SpecialRows<T>::linearise_regular(const Membrane<T>& m) {
+  for (DiagonalRow<T>& row : diagonal_) std::ranges::fill(row.g, T(0));
   for (int j = 1; j + 1 < m.ux.rows; ++j)
     for (int n = near_begin(j); n < near_begin(j + 1); ++n) {
+      const NearNode& node = near_node(n);
       NearRow<T>& row = near_[std::size_t(n)];
-      std::fill_n(row.g, kStencilPlaces - 1, T(0));
+      std::ranges::fill(row.g, T(0));
       if (!m.pressure) continue;
       for (int q = 0; q < 4; ++q) {
-        if (!(row.regular >> q & 1)) continue;
-        const int own = corner_towards_node(q), i0 = row.column - (own & 1), j0 = j - (own >> 1);
+        if (row.part[q] < 0)
+          row.part[q] = -1 - row_place(m.pressure, node.column - (corner_towards_node(q) & 1));
+        if (!(node.regular >> q & 1)) continue;
+        const int own = corner_towards_node(q), i0 = node.column - (own & 1), j0 = j - (own >> 1);
         const int next = kNext[std::size_t(own)], previous = kPrevious[std::size_t(own)];
         const T half = T(0.5) * clamped(m, m.pressure.at(i0, j0), i0, j0);
         row.g[stencil_place(own, next)] += half;
@@ -270,8 +157,15 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
     NearRow<T>& node = near_[std::size_t(near)];
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
-    if (next.vertex < kFirstCrossing) node.g[stencil_place(own, next.vertex)] += half;
-    if (previous.vertex < kFirstCrossing) node.g[stencil_place(own, previous.vertex)] -= half;
+    DiagonalRow<T>* const diagonals = diagonals_of(near);
+    for (const auto& [other, g] : {std::pair{next.vertex, half}, {previous.vertex, -half}}) {
+      if (other >= kFirstCrossing) continue;
+      const std::size_t place = stencil_place(own, other);
+      if (place < kDiagonal)
+        node.g[place] += g;
+      else if (diagonals)
+        diagonals->g[place - kDiagonal] += g;
+    }
     const Vector2<T> to = at_vertex(cells, m.ux, m.uy, i, j, next.vertex),
                      from = at_vertex(cells, m.ux, m.uy, i, j, previous.vertex);
     const T bx = T(0.5) * ((next.y - previous.y) + (to.y - from.y));
@@ -373,12 +267,12 @@ std::size_t SpecialRows<T>::bytes() const {
        {&near_begin_, &known_, &known_begin_, &loose_, &loose_begin_, &near_half_,
         &near_half_begin_, &visit_begin_, &border_begin_, &further_begin_})
     indices += list->size();
-  return indices * sizeof(int) + near_.size() * sizeof(NearRow<T>) +
-         visit_.size() * sizeof(CellVisit<T>) + part_.size() * sizeof(PartRow<T>) +
-         jump_.size() * sizeof(T) + part_jumps_.size() * sizeof(PartJumps<T>) +
-         border_.size() * sizeof(BorderJump<T>) + further_.size() * sizeof(PartCoupling<T>) +
-         block_.size() * sizeof(BlockRow<T>) + fringe_.size() * sizeof(FringeCell) +
-         tangent_.size() * sizeof(T) + soft_.bytes();
+  return indices * sizeof(int) + near_.size() * (sizeof(NearNode) + sizeof(NearRow<T>)) +
+         diagonal_.size() * sizeof(DiagonalRow<T>) + visit_.size() * sizeof(CellVisit<T>) +
+         part_.size() * sizeof(PartRow<T>) + jump_.size() * sizeof(T) +
+         part_jumps_.size() * sizeof(PartJumps<T>) + border_.size() * sizeof(BorderJump<T>) +
+         further_.size() * sizeof(PartCoupling<T>) + block_.size() * sizeof(BlockRow<T>) +
+         fringe_.size() * sizeof(FringeCell) + tangent_.size() * sizeof(T) + soft_.bytes();
 }
 
 template class SpecialRows<float>;

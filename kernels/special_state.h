@@ -24,6 +24,12 @@ Vector2<T> at_vertex(const SpecialCells<T>& cells, const Plane<const T>& x, cons
   return {x.at(i + (vertex & 1), j + (vertex >> 1)), y.at(i + (vertex & 1), j + (vertex >> 1))};
 }
 
+/// Place of column i in a row of a plane: data[j·stride + row_place(plane, i)].
+template <class T>
+int row_place(const Plane<T>& plane, int i) {
+  return (i & 1 ? int(plane.odd) : 0) + (i >> 1);
+}
+
 /// visit(cell, i, j) for every special cell.
 template <class T, class F>
 void for_special(const SpecialCells<T>& cells, F&& visit) {
@@ -37,6 +43,11 @@ void for_parts(const SpecialCells<T>& cells, int cell, F&& visit) {
   const std::size_t n = std::size_t(cell);
   for (int p = cells.part_begin[n]; p < cells.part_begin[n + 1]; ++p) visit(p);
 }
+
+/// The corner of cell q of sw, se, nw, ne that is the node itself.
+constexpr int corner_towards_node(int q) { return 3 - q; }
+/// The quadrant of a node in which the cell lies whose corner it is.
+constexpr int quadrant(int corner) { return 3 - corner; }
 
 template <class T>
 T mu_at(const Membrane<T>& m, int i, int j) {

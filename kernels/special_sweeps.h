@@ -31,11 +31,15 @@ template <class T>
 void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
                         const Unknowns<const T>& d, const SplitRow<T>& out_x,
                         const SplitRow<T>& out_y, int j) {
-  for_near_products(rows, d, j, [&](const NearRow<T>& row, Vector2<T> value) {
-    const int parity = row.column & 1, k = row.column >> 1;
-    if (f) value = {f->x.half(j, parity)[k] - value.x, f->y.half(j, parity)[k] - value.y};
-    out_x.half[parity][k] = value.x;
-    out_y.half[parity][k] = value.y;
+  // Rows of buffers may be laid out otherwise than those of fields.
+  const std::ptrdiff_t odd = d.x.odd, shift = (out_x.half[1] - out_x.half[0]) - odd;
+  const T *fx = f ? f->x.half(j, 0) : nullptr, *fy = f ? f->y.half(j, 0) : nullptr;
+  T *x = out_x.half[0], *y = out_y.half[0];
+  for_near_products(rows, d, j, [=](const NearRow<T>& row, Vector2<T> value) {
+    if (fx) value = {fx[row.place] - value.x, fy[row.place] - value.y};
+    const std::ptrdiff_t at = row.place + (row.place >= odd ? shift : 0);
+    x[at] = value.x;
+    y[at] = value.y;
   });
   for (const int i : rows.known(j)) out_x.half[i & 1][i >> 1] = out_y.half[i & 1][i >> 1] = T(0);
 }
@@ -45,17 +49,22 @@ void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
 template <class T>
 void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
                         const Unknowns<const T>& d, const SplitRow<T>& out_p, T* out, int j) {
-  const SpecialCells<T>& cells = rows.cells();
-  for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
-    const int i = cells.column[std::size_t(n)];
-    out_p.half[i & 1][i >> 1] = T(0);
-    const Four<T> x = CornerValues<const T>(d.x, i, j).load(),
-                  y = CornerValues<const T>(d.y, i, j).load();
-    for (int p = cells.part_begin[std::size_t(n)]; p < cells.part_begin[std::size_t(n) + 1]; ++p) {
-      const T product = apply_part(rows, d, x, y, p, i, j);
-      out[p] = f ? f->listed[p] - product : product;
+  with_kind(rows, [&](auto soft, auto jumps) {
+    const PartRowView<T, soft.value, jumps.value> view(rows, d, j);
+    const SpecialCells<T>& cells = rows.cells();
+    const int begin = cells.row_begin[std::size_t(j)], end = cells.row_begin[std::size_t(j) + 1];
+    int p = cells.part_begin[std::size_t(begin)];
+    for (int n = begin; n < end; ++n) {
+      const int i = cells.column[std::size_t(n)];
+      out_p.half[i & 1][i >> 1] = T(0);
+      const Four<T> x = CornerValues<const T>(d.x, i, j).load(),
+                    y = CornerValues<const T>(d.y, i, j).load();
+      for (const int last = cells.part_begin[std::size_t(n) + 1]; p < last; ++p) {
+        const T product = view.apply(x, y, p, i);
+        out[p] = f ? f->listed[p] - product : product;
+      }
     }
-  }
+  });
   if (!rows.has_jumps()) return;
   // The vectorised kernels took dP of special cells as 0.
   for (const int parity : {0, 1})
@@ -69,43 +78,42 @@ void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
 template <class T>
 void relax_near_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, const Unknowns<T>& d,
                     int j) {
-  for_near_products<T>(rows, d, j, [&](const NearRow<T>& row, const Vector2<T>& product) {
-    const int parity = row.column & 1, k = row.column >> 1;
-    d.x.half(j, parity)[k] += (f.x.half(j, parity)[k] - product.x) * row.inverse;
-    d.y.half(j, parity)[k] += (f.y.half(j, parity)[k] - product.y) * row.inverse;
+  const T *fx = f.x.half(j, 0), *fy = f.y.half(j, 0);
+  T *x = d.x.half(j, 0), *y = d.y.half(j, 0);
+  for_near_products<T>(rows, d, j, [=](const NearRow<T>& row, const Vector2<T>& product) {
+    x[row.place] += (fx[row.place] - product.x) * row.inverse;
+    y[row.place] += (fy[row.place] - product.y) * row.inverse;
   });
 }
 
-/// Kaczmarz, weighted by the diagonal, on the parts of a special cell of cell row j; the last part
-/// first if `reverse`.
-template <class T>
-[[gnu::always_inline]] inline void relax_parts(const SpecialRows<T>& rows,
-                                               const Unknowns<const T>& f, const Unknowns<T>& d,
-                                               const CellVisit<T>& visit, bool reverse, int j) {
-  const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
-  Four<T> x = at_x.load(), y = at_y.load();
-  const Four<T> inverse(visit.inverse);
-  const int step = reverse ? -1 : 1;
-  int p = reverse ? visit.part_end - 1 : visit.part_begin;
-  for (int m = visit.part_begin; m < visit.part_end; ++m, p += step) {
-    const PartRow<T>& row = rows.part(p);
-    const T t = (f.listed[p] - apply_part<T>(rows, d, x, y, p, visit.column, j)) * row.inverse;
-    d.listed[p] -= t;
-    const Four<T> move = inverse * Four<T>(t);
-    x = x + Four<T>(row.bx) * move;
-    y = y + Four<T>(row.by) * move;
-    if (rows.soft()) move_curve_of_part(*rows.soft(), p, t, d.curve);
-  }
-  at_x.store(x);
-  at_y.store(y);
-}
-
-/// The same on the special cells of column parity `parity` in cell row j.
+/// Kaczmarz, weighted by the diagonal, on the parts of the special cells of column parity `parity`
+/// in cell row j, of a cell's the last part first if `reverse`.
 template <class T>
 void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, const Unknowns<T>& d,
                     int parity, bool reverse, int j) {
-  for (const CellVisit<T>& visit : rows.visits(j, parity))
-    relax_parts(rows, f, d, visit, reverse, j);
+  with_kind(rows, [&](auto soft, auto jumps) {
+    const PartRowView<T, soft.value, jumps.value> view(rows, d, j);
+    const T* const wanted = f.listed;
+    T* const listed = d.listed;
+    const int step = reverse ? -1 : 1;
+    for (const CellVisit<T>& visit : rows.visits(j, parity)) {
+      const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
+      Four<T> x = at_x.load(), y = at_y.load();
+      const Four<T> inverse(visit.inverse);
+      int p = reverse ? visit.part_end - 1 : visit.part_begin;
+      for (int m = visit.part_begin; m < visit.part_end; ++m, p += step) {
+        const PartRow<T>& row = rows.part(p);
+        const T t = (wanted[p] - view.apply(x, y, p, visit.column)) * row.inverse;
+        listed[p] -= t;
+        const Four<T> move = inverse * Four<T>(t);
+        x = x + Four<T>(row.bx) * move;
+        y = y + Four<T>(row.by) * move;
+        if constexpr (soft.value) move_curve_of_part(*rows.soft(), p, t, d.curve);
+      }
+      at_x.store(x);
+      at_y.store(y);
+    }
+  });
 }
 
 /// Runs a vectorised sweep over the nodes of columns `parity` in row j; near nodes keep their

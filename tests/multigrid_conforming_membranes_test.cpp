@@ -256,7 +256,7 @@ TEST(ConformingMembranes, FoldsOfSpecialCellsAreSeen) {
   for (int j = 1; j < kNy; ++j)
     for (int k = rows.near_begin(j); k < rows.near_begin(j + 1); ++k)
       for (const double step : {-2.0, 2.0}) {
-        double& u = sample.level.ux.view().at(rows.near(k).column, j);
+        double& u = sample.level.ux.view().at(rows.near_node(k).column, j);
         u += step;
         const double least = least_triangle_J(sample), found = sums().least_J;
         EXPECT_LT(found, least + 1e-12);
@@ -296,7 +296,7 @@ VectorXd relaxed(const Sample& sample, const Eigen::MatrixXd& matrix, const Vect
   for (const int first : {1, 0})
     for (int j = first; j < kNy; j += 2) {
       for (int k = rows.near_begin(j); k < rows.near_begin(j + 1); ++k)
-        relax(sample.membrane.unknown[std::size_t(j * (kNx + 1) + rows.near(k).column)]);
+        relax(sample.membrane.unknown[std::size_t(j * (kNx + 1) + rows.near_node(k).column)]);
       sample.for_soft([&](int n, int c) {
         if (sample.level.conforming->cells.crossing[std::size_t(c)].place == j) relax(n);
       });

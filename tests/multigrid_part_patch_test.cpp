@@ -103,7 +103,7 @@ TEST_P(PartPatch, MovesNodesByThePressuresForceOverTheDiagonal) {
   double moved = 0.0;
   for (int j = 1; j < level.ny; ++j)
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-      const int i = rows.near(n).column;
+      const int i = rows.near_node(n).column;
       const double dx = level.d.x.view().at(i, j), dy = level.d.y.view().at(i, j),
                    inverse = rows.near(n).inverse;
       EXPECT_NEAR(dx, -inverse * image.x.view().at(i, j), 1e-9 * (1.0 + std::abs(dx)));

@@ -97,22 +97,31 @@ struct SpecialCells {
   int parts() const { return int(area.size()); }
 };
 
-/// Places of a 3 × 3 stencil around a node in the order of NearRow: west and east of the southern,
-/// the middle and the northern row, then south and north, at last the node itself.
-constexpr int kStencilPlaces = 9;
-
-/// Row of a near node that is no known one: its stencil, and per quadrant sw, se, nw, ne the
-/// pressure of a regular cell or of the part that it belongs to. In the order and the size of
-/// vectors, which a node's loop is made of, and in floats two lines of cache.
-template <class T>
-struct alignas(64) NearRow {
-  T k[kStencilPlaces] = {};  ///< (H d)_x = k·d_x + g·d_y, (H d)_y = k·d_y − g·d_x
+/// A near node that is no known one.
+struct NearNode {
   int column = 0;
-  int regular = 15;  ///< bit q set: the cell in quadrant q is regular
-  T inverse = T(0);  ///< 1/K_ii
-  T g[kStencilPlaces - 1] = {};
+  int regular = 15;   ///< bit q set: the cell in quadrant q of sw, se, nw, ne is regular
+  int diagonal = -1;  ///< its DiagonalRow; −1: none
+};
+/// Its row: the stencil west, east, south and north, and per quadrant the pressure of a regular
+/// cell or of the part that the node belongs to. In the order of vectors, which a node's loop is
+/// made of, and in floats 96 bytes.
+template <class T>
+struct alignas(32) NearRow {
+  T k[4] = {};  ///< (H d)_x = own d_x + k·d_x + g·d_y, (H d)_y = own d_y + k·d_y − g·d_x
+  T g[4] = {};
   T bx[4] = {}, by[4] = {};
-  int part[4] = {-1, -1, -1, -1};  ///< −1: the cell is regular, or the node no corner of a part
+  /// −1 − place: that of the cell in its row; the cell is regular, or the node no corner of a part.
+  int part[4] = {-1, -1, -1, -1};
+  int place = 0, west = 0;  ///< of the node and of its western neighbour in their row (row_place)
+  T own = T(0);             ///< K_ii
+  T inverse = T(0);         ///< 1/K_ii
+};
+/// What else the row of a near node has where triangles join it with unknown nodes across cells:
+/// those in the south-west, south-east, north-west and north-east.
+template <class T>
+struct DiagonalRow {
+  T k[4] = {}, g[4] = {};
 };
 /// The same of isotropic membranes: (H d)_x = xx·d_x + xy·d_y, (H d)_y = yx·d_x + yy·d_y.
 template <class T>
@@ -207,7 +216,9 @@ class SpecialRows {
            borders_none;
   }
   int near_count() const { return near_begin_.back(); }
+  const NearNode& near_node(int n) const { return near_node_[std::size_t(n)]; }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
+  const DiagonalRow<T>& diagonal(int n) const { return diagonal_[std::size_t(n)]; }
   const PartRow<T>& part(int p) const { return part_[std::size_t(p)]; }
   /// Whether any neighbours are joined by a jump.
   bool has_jumps() const { return has_jumps_; }
@@ -240,6 +251,8 @@ class SpecialRows {
     return {list.data() + begin[std::size_t(row)], list.data() + begin[std::size_t(row) + 1]};
   }
   void list_near_nodes(int columns, int rows);
+  void list_diagonals();
+  DiagonalRow<T>* diagonals_of(int near);
   void list_fringe(int rows);
   void linearise_isotropic(const Membrane<T>& membrane);
   void list_couplings();
@@ -255,7 +268,9 @@ class SpecialRows {
   const SpecialCells<T>* cells_ = nullptr;
   std::vector<int> near_begin_, corner_, known_, known_begin_, loose_, loose_begin_, near_half_,
       near_half_begin_, visit_begin_, border_begin_, further_begin_;
+  std::vector<NearNode> near_node_;
   std::vector<NearRow<T>> near_;
+  std::vector<DiagonalRow<T>> diagonal_;
   std::vector<CellVisit<T>> visit_;
   std::vector<PartRow<T>> part_;
   std::vector<T> jump_;
