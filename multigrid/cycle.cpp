@@ -27,9 +27,9 @@ constexpr int kPowerSteps = 8;
 constexpr double kPowerMargin = 1.3;
 // Up to this kappa/mu averaged rows do with one sweep of the volume rows, after the curve rows on
 // the way down and before them on the way up. S1, S2, S4 at kappa 1 take .77 to .83 of the time at
-// 800², up to .99 below, but S4 100² 1.08, a step more. At kappa 2 to 10 steps take up to two cycles more,
-// and conforming cells more steps on S2. Nor on larger lattices: S1 takes 6 cycles instead of 4 at
-// 1600², 7 instead of 4 at 3200².
+// 800², up to .99 below, but S4 100² 1.08, a step more. At kappa 2 to 10 steps take up to two
+// cycles more, and conforming cells more steps on S2. Nor on larger lattices: S1 takes 6 cycles
+// instead of 4 at 1600², 7 instead of 4 at 3200².
 constexpr double kGentle = 1.5;
 constexpr std::size_t kManyNodes = 1000000;
 
