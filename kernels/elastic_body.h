@@ -89,7 +89,7 @@ template <class T>
         stencil.apply(lane, zero, k, hx, hy, inverse);
         if constexpr (mu_cells.value) {
           B w, e, s, n;
-          stencil.edges(lane, zero, k, w, e, s, n);
+          stencil.edges(stencil.mu_around(lane, k), w, e, s, n);
           hx = hx + B(m.spacing) * (w - e);
           hy = hy + B(m.spacing) * (s - n);
         }

@@ -86,7 +86,7 @@ struct MomentumRows {
     B w(stencil.mu), e(stencil.mu), s(stencil.mu), n(stencil.mu);
     a.c = B(T(4) * stencil.mu);
     if constexpr (kMuCells) {
-      stencil.edges(lane, zero, k, w, e, s, n);
+      stencil.edges(stencil.mu_around(lane, k), w, e, s, n);
       a.c = (w + e) + (s + n);
     }
     a.w = zero - free.w * w;

@@ -139,11 +139,12 @@ struct NodePass {
     if constexpr (kResidual)
       for (const T* at : {fx, fy}) ask(at + k + stride);
   }
-  /// `x`, `y`: d at the nodes and their neighbours.
+  /// `mu`: around the nodes, if it is not constant; `x`, `y`: d at the nodes and their neighbours.
   template <class L, class B>
-  void apply(L lane, B zero, int k, const FiveNodes<B>& x, const FiveNodes<B>& y,
-             const CellForces<B>& west, const CellForces<B>& east, B& hx, B& hy) const {
-    stencil.membrane(lane, zero, k, x, y, hx, hy);
+  void apply(L lane, B zero, int k, const FourCells<B>& mu, const FiveNodes<B>& x,
+             const FiveNodes<B>& y, const CellForces<B>& west, const CellForces<B>& east, B& hx,
+             B& hy) const {
+    stencil.membrane(zero, mu, x, y, hx, hy);
     const B half(T(0.5));
     hx = hx + half * (lane.load(carried_x + k) + (west.y1 - east.y2));
     hy = hy - half * (lane.load(carried_y + k) + (west.x1 - east.x2));
@@ -151,6 +152,16 @@ struct NodePass {
       hx = lane.load(fx + k) - hx;
       hy = lane.load(fy + k) - hy;
     }
+  }
+  /// mu around even nodes, without reading past column 0.
+  template <class E, class O, class B>
+  FourCells<B> mu_around_even(E at_even, O at_odd, B zero, int k) const {
+    if constexpr (!kMuCells) return {};
+    const CellsAtNode<T>& mu = stencil.mu_cells;
+    const auto west = [&](const T* row) {
+      return k == 0 ? shifted(zero, at_odd.load(row + 1)) : at_even.load(row + k);
+    };
+    return {west(mu.sw), at_even.load(mu.se + k), west(mu.nw), at_even.load(mu.ne + k)};
   }
   template <class L, class B>
   void store(L lane, int k, const CellForces<B>& west, const CellForces<B>& east, B hx,
@@ -207,10 +218,12 @@ void linear_row_of(const Membrane<T>& m, const Unknowns<const T>* f, const Unkno
         auto odd_five = [&](const PairNodes<B>& d, const AtNode<T>& at) {
           return FiveNodes<B>{d.odd, d.even, d.east, at_odd.load(at.s + k), d.odd_n};
         };
-        even_nodes.apply(at_even, zero, k, even_five(x, even_nodes.stencil.dx),
-                         even_five(y, even_nodes.stencil.dy), w, e, even_x, even_y);
-        odd_nodes.apply(at_odd, zero, k, odd_five(x, odd_nodes.stencil.dx),
-                        odd_five(y, odd_nodes.stencil.dy), e, o, odd_x, odd_y);
+        even_nodes.apply(at_even, zero, k, even_nodes.mu_around_even(at_even, at_odd, zero, k),
+                         even_five(x, even_nodes.stencil.dx), even_five(y, even_nodes.stencil.dy),
+                         w, e, even_x, even_y);
+        odd_nodes.apply(at_odd, zero, k, odd_nodes.stencil.mu_around(at_odd, k),
+                        odd_five(x, odd_nodes.stencil.dx), odd_five(y, odd_nodes.stencil.dy), e, o,
+                        odd_x, odd_y);
         // Stores last: a load after a store would not be shared with one before it.
         even_nodes.store(at_even, k, w, e, even_x, even_y);
         odd_nodes.store(at_odd, k, e, o, odd_x, odd_y);

@@ -54,7 +54,7 @@ template <class T>
     const NodeStencil<T, false, true> stencil(m, d, j, parity);
     scale([&](auto lane, auto zero, int k) {
       auto w = zero, e = zero, s = zero, n = zero;
-      stencil.edges(lane, zero, k, w, e, s, n);
+      stencil.edges(stencil.mu_around(lane, k), w, e, s, n);
       return decltype(zero)(T(1)) / ((w + e) + (s + n));
     });
   } else {

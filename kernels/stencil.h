@@ -90,6 +90,12 @@ auto five_nodes(L lane, const AtNode<T>& f, int k) {
                       lane.load(f.s + k), lane.load(f.n + k)};
 }
 
+/// A value of the four cells around a node.
+template <class B>
+struct FourCells {
+  B sw, se, nw, ne;
+};
+
 /// The operator K + P_H G and Bᵀ at the nodes of one parity in row j, applied to a correction d.
 template <class T, bool kPressure, bool kMuCells>
 struct NodeStencil {
@@ -138,15 +144,22 @@ struct NodeStencil {
                            clamped(p.nw, mu_cells.nw), clamped(p.ne, mu_cells.ne));
   }
 
+  /// mu of the four cells around the nodes.
+  template <class L>
+  auto mu_around(L lane, int k) const {
+    using B = decltype(lane.load(mu_cells.sw));
+    if constexpr (!kMuCells) return FourCells<B>{};
+    return FourCells<B>{lane.load(mu_cells.sw + k), lane.load(mu_cells.se + k),
+                        lane.load(mu_cells.nw + k), lane.load(mu_cells.ne + k)};
+  }
   /// Edge stiffness ½(mu + mu) of the two cells beside it, in the order W, E, S, N.
-  template <class L, class B>
-  void edges(L lane, B, int k, B& w, B& e, B& s, B& n) const {
-    const B sw = lane.load(mu_cells.sw + k), se = lane.load(mu_cells.se + k),
-            nw = lane.load(mu_cells.nw + k), ne = lane.load(mu_cells.ne + k), half(T(0.5));
-    w = half * (sw + nw);
-    e = half * (se + ne);
-    s = half * (sw + se);
-    n = half * (nw + ne);
+  template <class B>
+  static void edges(const FourCells<B>& mu, B& w, B& e, B& s, B& n) {
+    const B half(T(0.5));
+    w = half * (mu.sw + mu.nw);
+    e = half * (mu.se + mu.ne);
+    s = half * (mu.sw + mu.se);
+    n = half * (mu.nw + mu.ne);
   }
 
   /// hx, hy = (H d) at the nodes, without the curve forces and, unless kCentre, without their own
@@ -161,8 +174,8 @@ struct NodeStencil {
       px = half * (volume_x(lane, dual, k) + around(lane, primal, dy, k));
       py = half * (volume_y(lane, dual, k) + around(lane, primal, dx, k));
     }
-    inverse =
-        membrane<kCentre>(lane, zero, k, five_nodes(lane, dx, k), five_nodes(lane, dy, k), hx, hy);
+    inverse = membrane<kCentre>(zero, mu_around(lane, k), five_nodes(lane, dx, k),
+                                five_nodes(lane, dy, k), hx, hy);
     if constexpr (kPressure) {
       hx = hx + px;
       hy = hy - py;
@@ -170,12 +183,12 @@ struct NodeStencil {
   }
 
   /// hx, hy = (K d) at the nodes where d is x, y, see apply; returns 1/K_ii.
-  template <bool kCentre = true, class L, class B>
-  B membrane(L lane, B zero, int k, const FiveNodes<B>& x, const FiveNodes<B>& y, B& hx,
-             B& hy) const {
+  template <bool kCentre = true, class B>
+  B membrane(B zero, const FourCells<B>& around, const FiveNodes<B>& x, const FiveNodes<B>& y,
+             B& hx, B& hy) const {
     if constexpr (kMuCells) {
       B w, e, s, n;
-      edges(lane, zero, k, w, e, s, n);
+      edges(around, w, e, s, n);
       const B sum = (w + e) + (s + n);
       const B centre_x = kCentre ? sum * x.c : zero, centre_y = kCentre ? sum * y.c : zero;
       hx = centre_x - ((w * x.w + e * x.e) + (s * x.s + n * x.n));
