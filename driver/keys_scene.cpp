@@ -162,7 +162,8 @@ const std::array kKeys = {
     Key{.name = "exact",
         .value = "",
         .bound = "true or false",
-        .help = "curves met to rounding, in double precision; slower",
+        .help = "no bound on kappa and weights, hard curves met to rounding, nodes settled to 1e-7 "
+                "cells, in double precision; slower; auto means averaged curves then",
         .set = set_switch<&Options::exact>},
     Key{.name = "tolerance",
         .value = "PX",

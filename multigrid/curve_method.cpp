@@ -46,7 +46,6 @@ std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
 }
 
 std::string why_not_conforming(const SolverOptions& options) {
-  if (options.exact) return "exact rows belong to averaged curves, not to conforming ones";
   if (options.solver != Solver::gcr)
     return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";
   return {};
@@ -59,7 +58,7 @@ CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& optio
     if (!why_not.empty()) throw std::invalid_argument(why_not);
     return CurveMethod::conforming;
   }
-  if (!why_not.empty() || !settles(problem)) return CurveMethod::averaged;
+  if (!why_not.empty() || options.exact || !settles(problem)) return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

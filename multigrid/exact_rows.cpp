@@ -32,16 +32,18 @@ constexpr double kClampedShare = 0.8;
 // Steps that a note looks back on.
 constexpr std::size_t kLastSteps = 5;
 
-/// `most`: GCR's directions.
-LinearOptions linear_options(Solver solver, double reduction, std::size_t nodes, int most) {
-  const bool strip = nodes >= kStripNodes;
+/// `rows`: averaged ones; `most`: GCR's directions. The rest is as `before`.
+LinearOptions linear_options(const LinearOptions& before, double reduction, std::size_t nodes,
+                             bool rows, int most) {
+  const bool strip = rows && nodes >= kStripNodes;
   const int directions =
       strip ? kStripDirections : std::clamp(int(kDirectionNodes / nodes), kLeastDirections, most);
-  return {.solver = solver,
+  return {.solver = before.solver,
           .content = reduction,
           .reduction = reduction,
           .most_cycles = strip ? kStripCycles : std::max(kCycles, directions),
-          .directions = directions};
+          .directions = directions,
+          .part_patches = before.part_patches};
 }
 
 void append(const NewtonReport& more, NewtonReport& done) {
@@ -60,22 +62,23 @@ std::string figure(double value) {
   return text;
 }
 
-/// What is left where a run did not end as it should.
-std::string statement(const NewtonReport& done, double row_gap, double cell_px) {
+/// What is left where a run did not end as it should; `rows`: averaged ones.
+std::string statement(const NewtonReport& done, bool rows, double row_gap, double cell_px) {
   if (done.status == Status::infeasible)
     return "exact curve rows contradict one another: one is missed by " +
            figure(row_gap * cell_px) + " px";
+  const std::string met = "rows are met to " + figure(row_gap * cell_px) + " px";
   if (done.status == Status::not_finite)
-    return "exact curve rows: a number that is not finite appeared; rows are met to " +
-           figure(row_gap * cell_px) + " px";
+    return std::string("exact curve") + (rows ? " rows" : "s") +
+           ": a number that is not finite appeared" + (rows ? "; " + met : "");
   double move = 0.0, residual = 0.0;
   const std::size_t last = std::min(done.steps.size(), kLastSteps);
   for (auto step = done.steps.end() - std::ptrdiff_t(last); step != done.steps.end(); ++step) {
     move = std::max(move, step->dx_max_px);
     residual = std::max(residual, step->residual);
   }
-  return "exact curve rows are met to " + figure(row_gap * cell_px) + " px, but nodes moved by " +
-         "up to " + figure(move * cell_px) + " px in the last " + std::to_string(last) +
+  return "exact curve" + (rows ? ' ' + met + ", but" : "s:") + " nodes moved by up to " +
+         figure(move * cell_px) + " px in the last " + std::to_string(last) +
          " steps, of whose linear systems " + figure(residual) + " was left at worst";
 }
 
@@ -101,17 +104,18 @@ std::vector<NewtonStep> stiffen(const NestedOptions& options, NewtonOptions newt
 }
 
 template <class T>
-NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
-                          const NewtonReport& with_jump, const LevelProgress& progress,
-                          double cell_px, std::vector<std::string>& notes) {
+NewtonReport until_at_rest(Hierarchy<T>& hierarchy, const LinearOptions& linear, Newton<T>& newton,
+                           const NewtonReport& before, const LevelProgress& progress,
+                           double cell_px, std::vector<std::string>& notes) {
   const std::size_t nodes = hierarchy[0].nodes();
-  hierarchy.drop_jump(jump_kept(nodes, hierarchy.traits().jump_inside));
+  const bool rows = !hierarchy.conforming();
+  if (rows) hierarchy.drop_jump(jump_kept(nodes, hierarchy.traits().jump_inside));
   NewtonOptions options;
   options.most_steps = kExactSteps;
   options.tolerance_rms = options.tolerance_max = kExactMove;
-  options.linear = linear_options(solver, kExactReduction, nodes, kMostDirections);
+  options.linear = linear_options(linear, kExactReduction, nodes, rows, kMostDirections);
   options.adaptive = true;
-  NewtonReport done = with_jump;
+  NewtonReport done = before;
   ClampSchedule clamp{.patience = kPatience};
   append(newton.run(options, clamp, part_of(progress, 0.0, kClampedShare)), done);
   const bool ended = done.status == Status::stalled || done.status == Status::limit;
@@ -119,7 +123,7 @@ NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& new
     // Clamped pressures make another Hessian, which may go back and forth around a solution; the
     // exact one converges there, but is indefinite and needs many directions.
     options.most_steps = kUnclampedSteps;
-    options.linear = linear_options(solver, kUnclampedReduction, nodes, kUnclampedDirections);
+    options.linear = linear_options(linear, kUnclampedReduction, nodes, rows, kUnclampedDirections);
     options.adaptive = false;
     ClampSchedule open{.theta = ClampSchedule{}.most};
     append(newton.run(options, open, part_of(progress, kClampedShare, 1.0)), done);
@@ -127,15 +131,16 @@ NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& new
   if (done.status == Status::cancelled) return done;
   const double row_gap = newton.largest_row_gap();
   if (!(row_gap < kRowMet) && done.status != Status::not_finite) done.status = Status::infeasible;
-  if (done.status != Status::converged) notes.push_back(statement(done, row_gap, cell_px));
+  if (done.status != Status::converged) notes.push_back(statement(done, rows, row_gap, cell_px));
   return done;
 }
 
-#define DRUMHEAD_INSTANTIATE(T)                                                              \
-  template std::vector<NewtonStep> stiffen(const NestedOptions&, NewtonOptions, Newton<T>&,  \
-                                           ClampSchedule&, const LevelProgress&);            \
-  template NewtonReport without_jump(Hierarchy<T>&, Solver, Newton<T>&, const NewtonReport&, \
-                                     const LevelProgress&, double, std::vector<std::string>&);
+#define DRUMHEAD_INSTANTIATE(T)                                                             \
+  template std::vector<NewtonStep> stiffen(const NestedOptions&, NewtonOptions, Newton<T>&, \
+                                           ClampSchedule&, const LevelProgress&);           \
+  template NewtonReport until_at_rest(Hierarchy<T>&, const LinearOptions&, Newton<T>&,      \
+                                      const NewtonReport&, const LevelProgress&, double,    \
+                                      std::vector<std::string>&);
 DRUMHEAD_INSTANTIATE(float)
 DRUMHEAD_INSTANTIATE(double)
 #undef DRUMHEAD_INSTANTIATE

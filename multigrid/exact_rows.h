@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What exact curve rows (SolverOptions::exact) ask of Newton's method besides: a kappa that grows
-// step by step on the level where the iteration starts, and on the finest level last steps without
-// the q-jump, until no node moves.
+// What exact curves (SolverOptions::exact) ask of Newton's method besides: a kappa that grows step
+// by step on the level where the iteration starts, and on the finest level last steps until no node
+// moves, with averaged rows without the q-jump. Conforming cells meet hard curves by construction;
+// the same steps solve them to the same tolerance.
 #include "curve_strip.h"
 #include "nested.h"
 
@@ -27,11 +28,13 @@ std::vector<NewtonStep> stiffen(const NestedOptions& options, NewtonOptions newt
                                 Newton<T>& newton, ClampSchedule& clamp,
                                 const LevelProgress& progress);
 
-/// On the finest level, from the solution `with_jump`, whose steps and changes are counted. Where
-/// that does not converge, `notes` gets a statement of what is left.
+/// On the finest level, from the solution `before`, whose steps and changes are counted, until no
+/// node moves: averaged rows without the q-jump, conforming cells as they are. `linear`: the solver
+/// and how its cycles relax. Where that does not converge, `notes` gets a statement of what is
+/// left.
 template <class T>
-NewtonReport without_jump(Hierarchy<T>& hierarchy, Solver solver, Newton<T>& newton,
-                          const NewtonReport& with_jump, const LevelProgress& progress,
-                          double cell_px, std::vector<std::string>& notes);
+NewtonReport until_at_rest(Hierarchy<T>& hierarchy, const LinearOptions& linear, Newton<T>& newton,
+                           const NewtonReport& before, const LevelProgress& progress,
+                           double cell_px, std::vector<std::string>& notes);
 
 }  // namespace drumhead::multigrid

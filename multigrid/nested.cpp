@@ -288,8 +288,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     newton_options.least_rate = least_rate(hierarchy, options);
     newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
     if (exact && !ended_early(done.status))
-      done = without_jump(hierarchy, options.solver, newton, done,
-                          part_of(progress, kJumpShare, 1.0), cell_px, report.notes);
+      done = until_at_rest(hierarchy, newton_options.linear, newton, done,
+                           part_of(progress, kJumpShare, 1.0), cell_px, report.notes);
     report.status = done.status;
     report.algebraic_rms_px = done.error_rms * cell_px;
     report.algebraic_max_px = done.error_max * cell_px;

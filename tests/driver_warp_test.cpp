@@ -91,6 +91,22 @@ TEST_F(DriverWarp, ACurveIsCarriedToItsTarget) {
   EXPECT_EQ(read_image(scratch / "o.png").width(), 11 * kWidth);  // small pictures are enlarged
 }
 
+TEST_F(DriverWarp, ConformingCurvesAreExactWhereBothAreAskedFor) {
+  draw_shift(10);
+  auto run = [&](const std::string& method) {
+    const RunResult result = run_drumhead(
+        scratch, {"warp", "photo.png", "curves.svg", "--cells", "48", "-o", "out.png", "--report",
+                  "r.json", "--exact", "--kappa", "inf", "--curve-method", method});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(read_text(scratch / "r.json"));
+  };
+  const Json conforming = run("conforming");
+  EXPECT_EQ(conforming["curve_method"], "conforming");
+  EXPECT_EQ(conforming["exact"], true);
+  EXPECT_EQ(conforming["energy"]["volume"], 0.0);  // kappa is not capped
+  EXPECT_EQ(run("auto")["curve_method"], "averaged");
+}
+
 TEST_F(DriverWarp, ASoftCurveIsMetPartlyByEitherWay) {
   draw_shift(10);
   auto run = [&](const std::string& method, const std::string& weight) {

@@ -80,9 +80,12 @@ struct ConformingResult {
   int steps = 0;
   int folded_triangles = 0, folded_cells = 0;  ///< regular cells with a corner J < 0
 };
-/// Newton's method with the clamp schedule from the solution without pressures; each system is
-/// solved directly, pressures condensed with kappa ≤ 1e4 and what that leaves refined away.
-ConformingResult newton(const ConformingMembrane& membrane, int most_steps = 60);
+/// Newton's method with the clamp schedule from the solution without pressures, or from positions
+/// `start` of the unknown nodes (which a solution keeps in the first step, that finds its P); each
+/// system is solved directly, pressures condensed with kappa ≤ 1e4 and what that leaves refined
+/// away.
+ConformingResult newton(const ConformingMembrane& membrane, const Positions* start = nullptr,
+                        int most_steps = 60);
 
 /// Displacement at a rest position, both in cells.
 Eigen::Vector2d displacement_at(const ConformingMembrane& membrane, const ConformingState& state,

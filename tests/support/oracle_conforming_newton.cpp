@@ -129,14 +129,14 @@ void count_folds(const ConformingMembrane& m, ConformingResult& result) {
 
 }  // namespace
 
-ConformingResult newton(const ConformingMembrane& m, int most_steps) {
+ConformingResult newton(const ConformingMembrane& m, const Positions* from, int most_steps) {
   ConformingResult result;
   ConformingState& now = result.state;
-  now.x = m.rest;
+  now.x = from ? *from : m.rest;
   for (std::size_t n = 0; n < m.known.size(); ++n)
     if (m.known[n]) now.x.row(Eigen::Index(n)) = m.target.row(Eigen::Index(n));
   now.P = VectorXd::Zero(Eigen::Index(m.rows.size()));
-  {  // the membrane without pressures
+  if (!from) {  // the membrane without pressures
     const Sparse H = hessian(m, now.P);
     Eigen::SimplicialLDLT<Sparse> factor(H);
     ConformingState start = now;

@@ -50,7 +50,7 @@ std::optional<Solver> solver_named(std::string_view name);
 
 /// How the lattice meets the curves.
 enum class CurveMethod {
-  /// Conforming where that is possible (Solver::gcr, not exact), the membrane is not stvk, kappa/mu
+  /// Conforming where that is possible (Solver::gcr), not exact, the membrane is not stvk, kappa/mu
   /// is at most 300 for the others but crpm and harmonic, and at most 200 for crpm where a curve is
   /// soft; else averaged; averaged, too, where conforming cells do not converge.
   automatic,
@@ -81,9 +81,10 @@ class KeptLevels {
 
 struct SolverOptions {
   Solver solver = Solver::gcr;
-  /// Conforming curves are not exact, and need Solver::gcr.
+  /// Conforming curves need Solver::gcr.
   CurveMethod curve_method = CurveMethod::automatic;
-  /// Per-cell curve rows met to rounding, no q-jump in the equations, double precision throughout.
+  /// No cap on kappa or weights, averaged rows met to rounding with no q-jump in the equations,
+  /// double precision throughout, and Newton's method until no node moves by more than 1e-7 cells.
   bool exact = false;
   /// Algebraic error asked for, RMS over the nodes in picture pixels; 0: a tenth of the estimated
   /// discretisation error. Areas have their own bound, SolveReport::volume_gap.
@@ -91,13 +92,13 @@ struct SolverOptions {
   /// A solution on the same lattice to go on from, where curves or material have changed a little
   /// or curves were taken away: Newton on the finest lattice alone, to a tenth of the
   /// discretisation error that this solution was estimated to have if no tolerance is given. Where
-  /// that does not converge, with exact rows, and where the curves were met in another way, the
+  /// that does not converge, with `exact`, and where the curves were met in another way, the
   /// scene is solved from the beginning. Automatic goes on as the start did.
   const Solution* start = nullptr;
   /// Optional: takes over what the last solve left here and leaves its own. Only curves that have
   /// changed are cut; where only targets have, nothing is built anew. The solution is the same to
-  /// the last bit. Not for two solves at a time; exact rows, which no start helps, neither use nor
-  /// change it.
+  /// the last bit. Not for two solves at a time; exact solves, which no start helps, neither use
+  /// nor change it.
   KeptLevels* kept = nullptr;
   int threads = 0;  ///< OpenMP threads; 0: as OpenMP decides
   /// Optional. Called by the calling thread before each Newton step; false: stop
