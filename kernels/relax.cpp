@@ -63,13 +63,28 @@ struct Stage {
   Sweep sweep;
   int colour = 0;  ///< of nodes, or parity of the rows
   bool reverse = false;
+  bool band = false;  ///< of nodes and volume rows, those beside the curves alone
 };
 
+/// At most two relaxations of a band.
 struct StageList {
-  std::array<Stage, 20> at{};
+  std::array<Stage, 48> at{};
   int count = 0;
   void add(Stage stage) { at[std::size_t(count++)] = stage; }
 };
+
+/// Volume rows, curve rows, and both in reverse.
+void add_rows(const RelaxStages& stages, bool band, bool volume, bool cuts, StageList& list) {
+  for (bool reverse : {false, true}) {
+    const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
+    auto add = [&](Sweep sweep) {
+      for (int parity : rows) list.add({sweep, parity, reverse, band});
+    };
+    if (volume && !reverse && stages.volume != VolumeSweeps::reverse) add(Sweep::volume);
+    if (cuts) add(Sweep::cuts);
+    if (volume && reverse && stages.volume != VolumeSweeps::forwards) add(Sweep::volume);
+  }
+}
 
 StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool volume, bool cuts,
                       bool restriction) {
@@ -86,23 +101,18 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool v
   // not see each other.
   if (near && stages.sweeps != Sweeps::none)
     for (int parity : {0, 1}) list.add({Sweep::near, parity});
-  volume = volume && stages.sweeps == Sweeps::all;
-  cuts = cuts && stages.sweeps == Sweeps::all;
-  for (bool reverse : {false, true}) {
-    const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
-    auto add = [&](Sweep sweep) {
-      for (int parity : rows) list.add({sweep, parity, reverse});
-    };
-    if (volume && !reverse && stages.volume != VolumeSweeps::reverse) add(Sweep::volume);
-    if (cuts) add(Sweep::cuts);
-    if (volume && reverse && stages.volume != VolumeSweeps::forwards) add(Sweep::volume);
-  }
-  if (near && volume && stages.curves_again) {
+  const bool all = stages.sweeps == Sweeps::all;
+  if (all) add_rows(stages, false, volume, cuts, list);
+  if (near && volume && all && stages.curves_again) {
     // Once more along the curves: V-cycles that take a residual down by 1000 at 128², kappa 1e4: S1
     // 16 (20 without), S2 25 (29), S4 16 (21); more sweeps gain nothing more.
     for (int parity : {0, 1}) list.add({Sweep::near, parity});
     for (int parity : {0, 1}) list.add({Sweep::parts, parity, false});
     for (int parity : {1, 0}) list.add({Sweep::parts, parity, true});
+  }
+  for (int n = 0; n < stages.band && cuts; ++n) {
+    for (int colour : {0, 1}) list.add({Sweep::nodes, colour, false, true});
+    add_rows(stages, true, volume, true, list);
   }
   if (restriction) {
     // It looks three rows back: an empty stage keeps it clear of the sweep before.
@@ -145,6 +155,16 @@ class Relaxation {
     relax_near_row(*special_, f_, d_, j);
     relax_curve_row(*special_, f_, d_, j);
   }
+  void band_nodes(int colour, int j) const {
+    const Spans spans = band(j);
+    if (spans.first != spans.last) kernels_.relax_nodes(level_.membrane, f_, d_, colour, spans, j);
+  }
+  void band_volume(bool reverse, int j) const {
+    const Spans spans = band(j);
+    if (spans.first == spans.last) return;
+    for (const int parity : {int(reverse), int(!reverse)})
+      kernels_.relax_volume_spans(level_.membrane, f_, d_, parity, spans, j);
+  }
   void volume(bool reverse, typename RowScratch<T>::Rows& rows, int j) const {
     const auto sweep = [&](const SplitRow<const T>& share) {
       kernels_.relax_volume(level_.membrane, f_, d_, reverse, share, j);
@@ -161,6 +181,10 @@ class Relaxation {
   }
 
  private:
+  Spans band(int j) const {
+    const Cuts<T>& cuts = level_.cuts;
+    return {cuts.band + cuts.band_begin[j], cuts.band + cuts.band_begin[j + 1]};
+  }
   template <class F>
   void keeping_near(int colour, T* kept, int j, F&& sweep) const {
     if (special_)
@@ -203,13 +227,21 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
         if (j > 0) relaxation.start(rows.kept, j);
         break;
       case Sweep::nodes:
-        if (j > 0) relaxation.nodes(stage.colour, rows.kept, j);
+        if (j == 0) break;
+        if (stage.band)
+          relaxation.band_nodes(stage.colour, j);
+        else
+          relaxation.nodes(stage.colour, rows.kept, j);
         break;
       case Sweep::near:
         if ((j & 1) == stage.colour) relaxation.near(j);
         break;
       case Sweep::volume:
-        if ((j & 1) == stage.colour) relaxation.volume(stage.reverse, rows, j);
+        if ((j & 1) != stage.colour) break;
+        if (stage.band)
+          relaxation.band_volume(stage.reverse, j);
+        else
+          relaxation.volume(stage.reverse, rows, j);
         break;
       case Sweep::parts:
         if ((j & 1) == stage.colour) relaxation.parts(stage.reverse, j);
@@ -225,31 +257,6 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
     }
   });
   if (coarse_f) restriction.finish();
-}
-
-template <class T>
-void relax_band(const LevelSystem<T>& level) {
-  const KernelTable<T>& kernels = table<T>();
-  const Membrane<T>& m = level.membrane;
-  const Unknowns<T>& d = level.d;
-  const Unknowns<const T> f = level.f;
-  const Cuts<T>& cuts = level.cuts;
-  const StageList list = list_stages({}, false, false, bool(d.p), true, false);
-  skewed_sweeps(d.x.rows - 1, list.count, 0, [&](int s, int j, int) {
-    const Stage& stage = list.at[std::size_t(s)];
-    const Spans band{cuts.band + cuts.band_begin[j], cuts.band + cuts.band_begin[j + 1]};
-    if (band.first == band.last) return;
-    if (stage.sweep == Sweep::nodes) {
-      if (j > 0) kernels.relax_nodes(m, f, d, stage.colour, band, j);
-    } else if ((j & 1) != stage.colour) {
-      return;
-    } else if (stage.sweep == Sweep::cuts) {
-      relax_cuts_row(m, cuts, level.fq, level.dq, d, level.f, stage.reverse, j);
-    } else {
-      for (const int parity : {int(stage.reverse), int(!stage.reverse)})
-        kernels.relax_volume_spans(m, f, d, parity, band, j);
-    }
-  });
 }
 
 template <class T>
@@ -294,8 +301,6 @@ double residual_norm2(const LevelSystem<T>& level, RowScratch<T>& scratch) {
 
 template double residual_norm2(const LevelSystem<float>&, RowScratch<float>&);
 template double residual_norm2(const LevelSystem<double>&, RowScratch<double>&);
-template void relax_band(const LevelSystem<float>&);
-template void relax_band(const LevelSystem<double>&);
 template class RowScratch<float>;
 template class RowScratch<double>;
 template void relax(const LevelSystem<float>&, const RelaxStages&, const Unknowns<const float>*,

@@ -19,18 +19,27 @@ constexpr double kPressureJump = 0.4;
 // 1e4, 800²): .10, .31, .50 without; .07, .27, .59 with it; .06, .26, .61 with another one before
 // the correction, .03, .34, .68 with two and two. S4, kappa 1e4, 800²: 581 work units without, 95
 // with it. At kappa 10 it costs as much as it gains.
+// Before the restriction on the top level, once, from kStiff on twice: what the interpolated state
+// lacks is rough and beside the curves, one relaxation leaves most of it, and coarse levels take
+// that for something smooth. Moves of the second and third step at 800², in those of the one
+// before: S1 kappa 1 .46, .33 without and .38, .26 with it, S2 kappa 10 .43, .35 and .41, .27. With
+// what that allows (last_once_, steps that go further) whole solves take .77 and .76 of the time;
+// at kappa 1e4 S2 and S4 .68 and .77, and S2 on 400² 3 cycles instead of 10. Not where a mask of
+// kappa is: S3 takes .91, 1.0 and .93 of the steps at 200², 400², 800² (means of six offsets), and
+// as long.
 constexpr double kStiff = 30.0;
 // Below it the list of special cells is not relaxed twice a sweep either: S2 kappa 10 at 160² 26.7
 // ms with once, 30.3 with twice, S4 14.8 and 15.2. The power method sees the largest eigenvalue
 // from below, on the coarser levels.
 constexpr int kPowerSteps = 8;
 constexpr double kPowerMargin = 1.3;
-// Up to this kappa/mu averaged rows do with one sweep of the volume rows, after the curve rows on
-// the way down and before them on the way up. S1, S2, S4 at kappa 1 take .77 to .83 of the time at
-// 800², up to .99 below, but S4 100² 1.08, a step more. At kappa 2 to 10 steps take up to two
-// cycles more, and conforming cells more steps on S2. Nor on larger lattices: S1 takes 6 cycles
-// instead of 4 at 1600², 7 instead of 4 at 3200².
-constexpr double kGentle = 1.5;
+// Up to this kappa/mu averaged rows do with one sweep of the top level's volume rows, after the
+// curve rows on the way down and before them on the way up: S2, S4 kappa 10 take .96, .94 of the
+// time at 200², .94, .98 at 800². On all levels S2, 64² takes 18 cycles instead of 3.
+constexpr double kGentle = 20.0;
+// And up to this one of all levels': S1 kappa 1, 200² to 800², .9 of the time. Not on larger
+// lattices: S1 takes 5 cycles instead of 3 at 3200².
+constexpr double kGentlest = 1.5;
 constexpr std::size_t kManyNodes = 1000000;
 
 }  // namespace
@@ -53,14 +62,23 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
   }
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
-  relaxes_band_ = pressure && !kernels::isotropic(hierarchy.traits().model) &&
-                  hierarchy.traits().stiffness >= kStiff && hierarchy[top].cuts.size() > 0;
-  curves_again_ = hierarchy.traits().stiffness >= kStiff;
-  if (!hierarchy.conforming() && hierarchy.traits().stiffness <= kGentle &&
-      hierarchy.traits().jump > 0.0 && hierarchy[top].nodes() < kManyNodes) {
-    volume_down_ = kernels::VolumeSweeps::reverse;
-    volume_up_ = kernels::VolumeSweeps::forwards;
-  }
+  const SceneTraits& traits = hierarchy.traits();
+  curves_again_ = traits.stiffness >= kStiff;
+  if (hierarchy[top].cuts.size() == 0 || kernels::isotropic(traits.model)) return;
+  const bool stiff = pressure && traits.stiffness >= kStiff;
+  band_up_ = stiff ? 1 : 0;
+  if (!(traits.jump > 0.0)) return;
+  const bool few = hierarchy[top].nodes() < kManyNodes;
+  if (traits.stiffness <= kGentlest && few) last_once_ = hierarchy.size();
+}
+
+template <class T>
+void Cycle<T>::relax_band() {
+  const SceneTraits& traits = hierarchy_.traits();
+  const Level<T>& level = hierarchy_[top_];
+  if (level.cuts.size() == 0 || kernels::isotropic(traits.model) || level.compliance) return;
+  band_down_ = pressure_ && traits.stiffness >= kStiff ? 2 : 1;
+  if (traits.stiffness <= kGentle) last_once_ = std::max(last_once_, top_);
 }
 
 template <class T>
@@ -162,8 +180,9 @@ void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
 template <class T>
 void Cycle<T>::relax_down(int l, bool from_zero) {
   const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);
-  kernels::RelaxStages stages{
-      .from_zero = from_zero, .volume = volume_down_, .curves_again = curves_again_};
+  kernels::RelaxStages stages{.from_zero = from_zero, .curves_again = curves_again_};
+  if (sweeps_once(l)) stages.volume = kernels::VolumeSweeps::reverse;
+  if (l == top_ && !smoother_ && patches_.empty()) stages.band = band_down_;
   if (smoother_) {
     stages.sweeps = kernels::Sweeps::none;
     if (from_zero) kernels::relax<T>(fine, stages, nullptr, nullptr, hierarchy_.scratch());
@@ -184,7 +203,9 @@ template <class T>
 void Cycle<T>::relax_up(int l) {
   const kernels::LevelSystem<T> fine = system(l);
   const kernels::Unknowns<const T> correction = system(l + 1).d;
-  kernels::RelaxStages stages{.volume = volume_up_, .curves_again = curves_again_};
+  kernels::RelaxStages stages{.curves_again = curves_again_};
+  if (sweeps_once(l)) stages.volume = kernels::VolumeSweeps::forwards;
+  if (!smoother_ && patches_.empty()) stages.band = band_up_;
   if (smoother_ || !patches_.empty()) stages.sweeps = kernels::Sweeps::none;
   if (!part_patches_.empty()) {
     kernels::relax<T>(fine, {.sweeps = kernels::Sweeps::none}, &correction, nullptr,
@@ -199,8 +220,6 @@ void Cycle<T>::relax_up(int l) {
     kernels::relax<T>(fine, {}, nullptr, nullptr, hierarchy_.scratch());
   } else if (smoother_) {
     smoother_->smooth(l - top_, fine);
-  } else if (relaxes_band_) {
-    kernels::relax_band<T>(fine);
   }
 }
 

@@ -41,6 +41,10 @@ class Cycle {
   /// (part_patch.h).
   void relax_parts(grid::MemoryMeter& meter);
 
+  /// Relaxes the band beside averaged curves once more before the first restriction, for a state
+  /// that was interpolated from a coarser level.
+  void relax_band();
+
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
   /// the curve forces of dq afterwards (and must do so before, if not from zero).
   void run(CycleKind kind, bool from_zero);
@@ -58,6 +62,7 @@ class Cycle {
   bool has_regions(const Level<T>& level) const {
     return pressure_ && level.pressure && level.conforming;
   }
+  bool sweeps_once(int l) const { return l <= last_once_; }
   void restrict_cuts(int l);
   void prolong_cuts(int l);
 
@@ -70,8 +75,9 @@ class Cycle {
   std::vector<CurvePatch<T>> patches_;      ///< of all levels but the bottom, from the top
   std::vector<PartPatch<T>> part_patches_;  ///< likewise
   std::vector<T> residual_;
-  bool relaxes_band_ = false, curves_again_ = true;
-  kernels::VolumeSweeps volume_down_ = kernels::VolumeSweeps::twice, volume_up_ = volume_down_;
+  int band_down_ = 0, band_up_ = 0;  ///< RelaxStages::band of the top level, and of all
+  bool curves_again_ = true;
+  int last_once_ = -1;  ///< the last level whose volume rows are swept once a relaxation
 };
 
 }  // namespace drumhead::multigrid

@@ -54,7 +54,7 @@ constexpr int kDirections = 6;
 constexpr double kSoft = 300.0;
 // From this kappa/mu on contraction is at first better than it stays: S4, kappa 100, 100² ended
 // with .26 of the discretisation error, thought to be .08.
-constexpr double kStiff = 30.0, kStiffRate = 0.5;
+constexpr double kStiff = 30.0, kStiffRate = 0.55, kStiffUnknownRate = 0.5;
 // Averaged rows below it: S4, kappa 10, 100² ended with .13, thought to be .07.
 constexpr double kAveragedRate = 0.35;
 // Conforming cells below kStiff: what a cycle leaves is volume rows that no longer move nodes, so
@@ -99,6 +99,13 @@ bool averaged(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
   return !hierarchy.conforming() && !options.exact && !kernels::isotropic(hierarchy.traits().model);
 }
 
+/// And without contrast: what is left after a cycle is one smooth field, much the same on every
+/// level.
+template <class T>
+bool smooth(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
+  return averaged(hierarchy, options) && !hierarchy[0].compliance;
+}
+
 template <class T>
 LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start,
                              const NestedOptions& options) {
@@ -118,6 +125,7 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start,
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
       level.nodes() < kSmallNodes)
     linear.kind = CycleKind::v;
+  linear.band = !start && averaged(hierarchy, options);
   if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.reduction = kReduction;
     const bool soft = level.mu && hierarchy.traits().stiffness >= kSoft;
@@ -144,11 +152,15 @@ LevelReport in_pixels(int nx, int ny, std::vector<NewtonStep> steps, double cell
 
 namespace {
 
-/// Contraction that no step of a finer level is expected to beat before one was seen.
+/// Contractions that no step of a finer level is expected to beat.
 template <class T>
-double least_rate(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
-  if (hierarchy.traits().stiffness >= kStiff) return kStiffRate;
-  return averaged(hierarchy, options) ? kAveragedRate : 0.0;
+void set_least_rates(const Hierarchy<T>& hierarchy, const NestedOptions& options,
+                     NewtonOptions& newton) {
+  const bool stiff = hierarchy.traits().stiffness >= kStiff;
+  newton.least_rate = stiff && smooth(hierarchy, options) ? kStiffRate : 0.0;
+  newton.least_unknown_rate = stiff ? std::max(kStiffUnknownRate, newton.least_rate)
+                              : averaged(hierarchy, options) ? kAveragedRate
+                                                             : 0.0;
 }
 
 /// The first state on the start level: harmonic, and for large rotations on along the load path,
@@ -193,6 +205,18 @@ void end_early(Hierarchy<T>& hierarchy, int l, SolveReport& report) {
   while (--l >= 0) hierarchy.prolong_state(l);
 }
 
+/// What the steps of the next level are expected to do, from those observed on this one. `smooth`:
+/// beyond the last of them as on the levels before, and where their linear systems are solved as
+/// well.
+void expect(const std::vector<Contraction>& observed, bool smooth,
+            std::vector<Contraction>& expected) {
+  const std::size_t count = observed.empty() ? 0 : observed.size() - 1;
+  expected.resize(smooth ? std::max(expected.size(), count) : count);
+  std::copy_n(observed.begin(), count, expected.begin());
+  if (smooth) return;
+  for (Contraction& contraction : expected) contraction.residual = 0.0;
+}
+
 /// What every level is asked for.
 template <class T>
 void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedOptions& options,
@@ -202,8 +226,8 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.linear = linear_options(hierarchy, l, start, options);
   newton.linear.solver = options.solver;
   newton.most_steps = start ? kStartSteps : finest ? kFinestSteps : kLevelSteps;
-  // Two steps on the coarser levels measure the contraction that the finest may then count on.
-  newton.least_steps = finest ? 1 : 2;
+  // What steps on the coarser levels contract by the finest may then count on.
+  newton.least_steps = finest ? 1 : newton.lengthens && l == 1 ? 3 : 2;
   const double share = easy && !finest ? kCoarseShare : kShare;
   newton.share_of_change = start ? 0.0 : share * options.discretisation_share;
   const double start_error = easy                           ? kGentleStart
@@ -213,6 +237,7 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.tolerance_max = 0.0;
   newton.most_volume_gap = finest ? kMostVolumeGap : 0.0;
   newton.contrast = bool(level.compliance);
+  newton.lengthens = !start && smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff;
 }
 
 /// What the run itself is asked for besides, once it has a state to begin with.
@@ -225,7 +250,8 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
     newton.tolerance_rms = options.tolerance_cells;
     // The moves of loosely solved steps say too little of pressures that are slow to settle.
     newton.linear.content = newton.linear.reduction = kAccurate;
-    newton.expected_rates.clear();
+    newton.expected.clear();
+    newton.lengthens = false;
   }
   if (level.solid.law.model == kernels::Model::stvk) newton.most_steps = kCollapseSteps;
   if (level.solid.law.relief > T(0)) {
@@ -285,8 +311,8 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     const bool exact = l == 0 && options.exact;
     NewtonReport done = newton.run(
         newton_options, clamp, part_of(progress, way ? kPathShare : 0.0, exact ? kJumpShare : 1.0));
-    newton_options.least_rate = least_rate(hierarchy, options);
-    newton_options.expected_rates = l == start ? std::vector<double>{} : done.rates;
+    set_least_rates(hierarchy, options, newton_options);
+    if (l != start) expect(done.contractions, smooth(hierarchy, options), newton_options.expected);
     if (exact && !ended_early(done.status))
       done = until_at_rest(hierarchy, newton_options.linear, newton, done,
                            part_of(progress, kJumpShare, 1.0), cell_px, report.notes);

@@ -20,7 +20,6 @@ namespace drumhead::multigrid {
 namespace {
 
 constexpr double kGrow = 8.0;
-constexpr double kShortestStep = 1e-4;
 constexpr double kExactTheta = 1e6;
 // Pressures looked at for the median; the clamp does not need it exactly.
 constexpr int kMedianSamples = 1 << 12;
@@ -97,45 +96,6 @@ void Newton<T>::set_clamp(double theta) {
 }
 
 template <class T>
-void Newton<T>::prepare_curve_merit() {
-  const kernels::Cuts<T> cuts = level_.cuts.view(T(hierarchy_.traits().jump));
-  const std::size_t values = level_.q.size();
-  gap_.assign(values, 0.0);
-  slope_.assign(values, 0.0);
-  std::vector<T> q(values), image(values), zero(values, T(0));
-  for (std::size_t k = 0; k < values; ++k) q[k] = level_.q[k] + level_.dq[k];
-  const kernels::Unknowns<const T> u{level_.ux.view(), level_.uy.view(), {}};
-  kernels::apply_cuts<T>(cuts, u, q.data(), image.data());
-  penalty_ = 0.0;
-  for (std::size_t k = 0; k < values; ++k) {
-    const grid::Point b = level_.wanted[k / 2];
-    gap_[k] = (k % 2 ? b.y : b.x) + double(image[k]);
-    penalty_ = std::max(penalty_, 1.5 * std::abs(double(q[k])) / double(cuts.length[k / 2]));
-  }
-  kernels::apply_cuts<T>(cuts, level_.d.view(), zero.data(), image.data());
-  for (std::size_t k = 0; k < values; ++k) slope_[k] = double(image[k]);
-}
-
-template <class T>
-double Newton<T>::curve_merit(double step) const {
-  const kernels::Cuts<T> cuts = level_.cuts.view(T(0));
-  double sum = 0.0;
-  for (std::size_t k = 0; k < gap_.size(); ++k)
-    sum += double(cuts.length[k / 2]) * std::abs(gap_[k] + step * slope_[k]);
-  return penalty_ * sum;
-}
-
-/// Σ q⁺·(b − W (x̂ + step d)): with the membrane's energy the Lagrangian, whose slope along a step
-/// of Newton's method is −dᵀ H d.
-template <class T>
-double Newton<T>::curve_work(double step) const {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < gap_.size(); ++k)
-    sum += (double(level_.q[k]) + double(level_.dq[k])) * (gap_[k] + step * slope_[k]);
-  return sum;
-}
-
-template <class T>
 double Newton<T>::force_norm(bool pressure) {
   set_force(pressure);
   const auto f = level_.f.view();
@@ -149,37 +109,20 @@ double Newton<T>::force_norm(bool pressure) {
   return std::sqrt(sum);
 }
 
+/// Moves the state along d, and sets the force there: by `lengthened`, if that is longer and brings
+/// all equations closer to zero, else by `longest` at most. A full step that brings them closer is
+/// taken without asking the merit, which costs two energies, and which counts gaps absolutely:
+/// close to a solution the linear solver may leave one that is larger than before, yet negligible.
+/// 0 where d is not finite.
 template <class T>
-double Newton<T>::line_search(double longest) {
-  prepare_curve_merit();
-  const kernels::Membrane<T> membrane = level_.membrane();
-  // arap with corners: gaps counted absolutely outweigh them, and what the linear solver leaves of
-  // the gaps would shorten steps (ML at 192², kappa 1e4: 109 steps, 70 with the Lagrangian).
-  const bool lagrangian = level_.solid.law.relief > T(0);
-  auto merit = [&](double step) {
-    const kernels::EnergySums sums = kernels::energy<T>(membrane, level_.d.view(), T(step));
-    return sums.elastic + sums.volume_merit + sums.constraint +
-           (lagrangian ? curve_work(step) : curve_merit(step));
-  };
-  const double before = merit(0.0);
-  // Cell energies are rounded, and so is the gap of every row.
-  double curve_length = 0.0;
-  const kernels::Cuts<T> cuts = level_.cuts.view(T(0));
-  for (int k = 0; k < cuts.count; ++k) curve_length += double(cuts.length[k]);
-  const double slack = 4.0 * (double(std::numeric_limits<T>::epsilon()) * std::abs(before) +
-                              penalty_ * curve_length * precision());
-  for (double step = longest; step >= kShortestStep; step *= 0.5)
-    if (merit(step) <= before + slack) return step;
-  return 0.0;
-}
-
-/// Moves the state along d, `longest` at most, and sets the force there. A full step that brings
-/// all equations closer to zero is taken without asking the merit, which costs two energies, and
-/// which counts gaps absolutely: close to a solution the linear solver may leave one that is larger
-/// than before, yet negligible. 0 where d is not finite.
-template <class T>
-double Newton<T>::take_step(double norm_before, double longest) {
+double Newton<T>::take_step(double norm_before, double longest, double lengthened) {
   const bool pressure = level_.nonlinear();
+  if (lengthened > longest) {
+    update(lengthened, pressure);
+    if (moves_.finite) norm_ = force_norm(pressure);
+    if (moves_.finite && norm_ < norm_before) return lengthened;
+    update(-lengthened, pressure);
+  }
   // arap: from folds on, equations closer to zero may be further from the minimum.
   const double tried = level_.solid.law.relief == T(0) ? longest : 0.0;
   update(tried, pressure);
@@ -361,12 +304,13 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     accuracy.set(norm, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
-    if (!std::isfinite(linear.residual + kernels::dot_listed<T>(d, d) +
-                       kernels::dot_curve<T>(d, d)))
-      return ended(Status::not_finite);
+    const double lists = kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d);
+    if (!std::isfinite(linear.residual + lists)) return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
+    Turned turned;
+    if (options.lengthens && !areas) turned = turn.from_last_to(d);
     step.step = areas ? take_area_step(report.volume_gap, options.most_volume_gap)
-                      : take_step(norm, length.longest());
+                      : take_step(norm, length.longest(), length.lengthened(turned));
     if (!moves_.finite) return ended(Status::not_finite);
     const double rms = moves_.rms;
     const bool shortened = step.step < std::min(1.0, length.longest());
@@ -374,15 +318,16 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.dx_rms_px = step.step * rms;
     step.dx_max_px = step.step * moves_.longest;
     if (!areas && accuracy.raised_by(step, shortened, report)) continue;
-    const bool directions = (!options.adaptive && length.slow(rms)) || judge.uneven();
-    const double cosine = directions ? turn.cosine_with(d) : kUnknown;
+    if (!options.lengthens && ((!options.adaptive && length.slow(rms)) || judge.uneven()))
+      turned = turn.from_last_to(d);
+    const double cosine = turned.cosine;
     const double gap = volume_gap(level_, volume_squares_, stiffness_, options.most_volume_gap);
     const bool ends =
         judge.ends_with(step, {rms, moves_.longest}, shortened, precision(), gap, cosine);
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
-    length.note(rms, shortened, n > 0 && !(linear.residual <= kAccurate), cosine);
+    length.note(rms, step.step, shortened, n > 0 && !(linear.residual <= kAccurate), cosine);
     followed = corners.act() && !shortened && (ends || corners.followed(norm_));
     if (followed) {
       corners.move();

@@ -22,6 +22,12 @@ inline constexpr double kErrorOfChange = 0.8;
 /// level_change.h, of which .05 to .19 is left so (S1, S2, S4, 100² to 400²).
 inline constexpr double kErrorOfSecondOrder = 1.0 / 3.0, kErrorWithTips = 1.0 / 2.0;
 
+/// Of the n-th step of a level.
+struct Contraction {
+  double rate = 0.0;      ///< the move of the next step by its own: dx2/dx1, dx3/dx2, …
+  double residual = 0.0;  ///< of its linear system; 0: not known, and never counted on below rate
+};
+
 struct NewtonOptions {
   double tolerance_rms = 0.0;  ///< stop when the error left is estimated below this, finest cells
   double tolerance_max =
@@ -32,15 +38,17 @@ struct NewtonOptions {
   double most_volume_gap = 0.0;  ///< and, if > 0, not before NewtonReport::volume_gap is below
   int least_steps = 1;
   int most_steps = 8;
-  /// Contractions of the steps on the level before (dx2/dx1, dx3/dx2, ...): what a step's successor
-  /// is expected to do before it is taken.
-  std::vector<double> expected_rates;
+  /// Of the steps on the level before: what a step's successor is expected to do before it is
+  /// taken.
+  std::vector<Contraction> expected;
   double onset = 0.0;  ///< of corners' one-sided term at the end (corners.h)
-  /// No step without such a model is expected to contract by more than this.
-  double least_rate = 0.0;
+  /// No step is expected to contract by more than this, nor, without such a model, than that.
+  double least_rate = 0.0, least_unknown_rate = 0.0;
   /// A mask of kappa: steps may converge unevenly (newton_judge.h). Without one the same rules
   /// end S5, kappa/mu 1e4, 128², conforming, with 2 ‰ more energy than it may have.
   bool contrast = false;
+  /// Steps that point where the one before did go on to where that leads (newton_judge.h).
+  bool lengthens = false;
   LinearOptions linear;
   /// Exact rows: linear.reduction is the residual wanted at first, less where Newton's method
   /// converges fast or where steps are shortened.
@@ -58,7 +66,7 @@ struct NewtonReport {
   double volume_gap = 0.0;
   bool rounded =
       false;  ///< ended where the precision of T lets nodes come no closer, with error_rms
-  std::vector<double> rates;  ///< contractions observed, for the next level
+  std::vector<Contraction> contractions;  ///< as observed, for the next level
 };
 
 /// What the clamp schedule remembers from level to level.
@@ -95,7 +103,7 @@ class Newton {
   void prepare_curve_merit();
   double force_norm(bool pressure);
   double line_search(double longest);
-  double take_step(double norm_before, double longest);
+  double take_step(double norm_before, double longest, double lengthened);
   double drop_momentum();
   double take_area_step(double gap, double enough);
   int inverted_cells() const;

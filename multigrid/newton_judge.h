@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "newton.h"
+#include "newton_turn.h"
 
 namespace drumhead::multigrid {
 
@@ -34,8 +35,9 @@ class Judge {
     if (only_areas_lack_) {
       report_.steps.push_back(step);
       advance(rounding);
-      // Solved, and no better: curves and areas contradict one another.
-      const bool in_vain = step.residual <= kUnsolved && volume_gap > kInVain * gap_before;
+      // Solved, and no better: curves and areas contradict one another, or theta is too large.
+      const bool tried = step.step > 0.0 || step.theta <= 1.0 || move.rms <= rounding;
+      const bool in_vain = tried && step.residual <= kUnsolved && volume_gap > kInVain * gap_before;
       only_areas_lack_ = step.step > 0.0 && !areas_done();
       areas_fail_ = step.step == 0.0;
       return (areas_done() || in_vain) && end(Status::converged);
@@ -47,7 +49,7 @@ class Judge {
     report_.change_max += step.dx_max_px;
 
     // Half a step back and forth is as good as a full one.
-    const bool full = step.step == 1.0 || (uneven_ && !shortened);
+    const bool full = ordinary(step) || (uneven_ && !shortened);
     creeping_ = step.step < kCreep ? creeping_ + 1 : 0;
     const bool gcr = options_.linear.solver == Solver::gcr;
     const bool solved = step.residual <= (gcr ? kStagnated : kUnsolved);
@@ -62,11 +64,11 @@ class Judge {
       return end(Status::stalled);
     // After a larger theta a step converges more slowly: no contraction is seen from it.
     const bool comparable = step.theta >= before.theta;
-    const bool seen = !first && comparable && step.step == 1.0 && before.step == 1.0;
-    const double rate = next_rate(seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate);
+    const bool seen = !first && comparable && ordinary(step) && ordinary(before);
     const bool rounded = seen && no_nearer(step, before, rounding);
-    const double left = rounded ? 1.0 : std::max(rate, step.residual) / (1.0 - rate);
-    set_error(left, {step.dx_rms_px, step.dx_max_px});
+    const double ratio = seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate;
+    const double left = moves_left(ratio, step.residual);
+    set_error(rounded ? 1.0 : left, {step.dx_rms_px, step.dx_max_px});
     if (uneven_ && step.step > 0.0 && before.step > 0.0 && cosine < kAstray) {
       report_.error_rms = kWandering * mean_move(step.dx_rms_px, step, before.dx_rms_px, before);
       report_.error_max = kWandering * mean_move(step.dx_max_px, step, before.dx_max_px, before);
@@ -107,6 +109,8 @@ class Judge {
   // Bounds of the contraction that a step is expected to have, and what is taken where none was
   // seen.
   static constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
+  // A step that contracts by so much more than on the level before follows another course there.
+  static constexpr double kUnlike = 0.6;
   // So many steps in a row shorter than kCreep lead nowhere.
   static constexpr double kCreep = 1e-2;
   static constexpr int kMostCreeping = 5;
@@ -133,20 +137,29 @@ class Judge {
   // So many full steps make up for a shortened one.
   static constexpr int kCalm = 10;
 
-  /// Contraction expected of the next step: that of the same step on the level before, made worse
-  /// by as much as this step was worse than its own; without a model, the worse of the
-  /// last two.
-  double next_rate(double seen) {
-    const std::vector<double>& expected = options_.expected_rates;
-    const std::size_t n = report_.steps.size();  // this step is the n-th
-    if (n > 1) report_.rates.push_back(seen);
-    double rate = std::max({seen, seen_before_, options_.least_rate});
-    seen_before_ = n > 1 ? seen : 0.0;
-    if (n <= expected.size()) {
-      rate = expected[n - 1];
-      if (n > 1) rate *= std::max(1.0, seen / expected[n - 2]);
+  /// What the steps to come will move nodes by, in moves of the step just taken, from the
+  /// contraction expected of the next one: that of the same step on the level before, made worse by
+  /// as much as this step and its linear solution were worse than there; without such a model, the
+  /// worse of the last two.
+  double moves_left(double seen, double residual) {
+    const std::vector<Contraction>& expected = options_.expected;
+    std::vector<Contraction>& observed = report_.contractions;
+    const std::size_t n = observed.size();  // steps before this one
+    if (n > 0) observed.back().rate = seen;
+    observed.push_back({0.0, residual});
+    double rate = std::max({seen, seen_before_, options_.least_unknown_rate}), least = residual;
+    seen_before_ = n > 0 ? seen : 0.0;
+    const double before = n > 0 && n <= expected.size() ? expected[n - 1].rate : 0.0;
+    if (n < expected.size() && !(seen < kUnlike * before)) {
+      double worse = before > 0.0 ? std::max(1.0, seen / before) : 1.0;
+      if (expected[n].residual > 0.0) {
+        worse = std::max(worse, residual / expected[n].residual);
+        least = 0.0;
+      }
+      rate = std::max(options_.least_rate, worse * expected[n].rate);
     }
-    return std::clamp(rate, kLeastRate, kMostRate);
+    rate = std::clamp(rate, kLeastRate, kMostRate);
+    return std::max(rate, least) / (1.0 - rate);
   }
 
   double wanted(double rounding) const {
@@ -171,6 +184,10 @@ class Judge {
   static double mean_move(double move, const NewtonStep& step, double move_before,
                           const NewtonStep& before) {
     return std::sqrt(move / step.step * (move_before / before.step));
+  }
+  /// As long as steps are where nothing holds them back.
+  bool ordinary(const NewtonStep& step) const {
+    return step.step == 1.0 || (options_.lengthens && step.step > 1.0);
   }
   bool areas_done() const {
     return options_.most_volume_gap == 0.0 || report_.volume_gap <= options_.most_volume_gap;
@@ -207,13 +224,23 @@ class StepLength {
   /// What is tried next.
   double longest() const { return longest_; }
 
+  /// Where a step that is `turned` so from the one before goes on to, its cycles being too weak for
+  /// what they have in common: Aitken's extrapolation (Irons and Tuck 1969).
+  double lengthened(const Turned& turned) const {
+    if (!(turned.cosine > kSomewhat) || !(taken_ >= 1.0)) return longest_;
+    const double along = turned.ratio * turned.cosine;
+    const double difference = 1.0 + turned.ratio * turned.ratio - 2.0 * along;
+    return std::clamp(taken_ * (1.0 - along) / difference, 1.0, kHalf);
+  }
+
   /// From the first step on that moves nodes nearly as far as the one before, their directions are
   /// asked for.
   bool slow(double rms) { return slow_ = slow_ || rms > kSlow * rms_before_; }
 
   /// Notes a step by its full move; `shortened`: see Judge; `counts`: it can have undone the one
   /// before; `cosine`: between the two moves, not a number where it is not known.
-  void note(double rms, bool shortened, bool counts, double cosine) {
+  void note(double rms, double taken, bool shortened, bool counts, double cosine) {
+    taken_ = shortened ? 0.0 : taken;
     const double rate = rms / rms_before_;
     const bool full = !shortened && longest_ == 1.0;
     const double factor = std::copysign(rate, cosine);  // of the mode that is left, if it is one
@@ -233,6 +260,9 @@ class StepLength {
   // lets most of them be twice as long. Back and forth: the scenes of kLeast in newton_accuracy.h
   // with averaged rows, 19 of 52 did not end so, 13 with it.
   static constexpr double kAligned = 0.9, kSlow = 0.75, kLongest = 8.0;
+  // What lengthened() takes for the same direction, and its bound.
+  static constexpr double kSomewhat = 0.3, kHalf = 1.5;
+  double taken_ = 0.0;  ///< length of the last step, 0 where it was shortened
   double longest_ = 1.0, rms_before_ = std::numeric_limits<double>::infinity();
   bool slow_ = false;
   int in_circles_ = 0;

@@ -190,7 +190,7 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
   newton.most_steps = kMostSteps;
   newton.most_volume_gap = kMostVolumeGap;
   newton.linear.content = kContent;
-  newton.expected_rates = {kFirstRate};
+  newton.expected = {{.rate = kFirstRate}};
   const SolveReport& before = start.report;
   newton.tolerance_rms = options.tolerance_cells > 0.0
                              ? options.tolerance_cells

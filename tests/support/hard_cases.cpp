@@ -109,7 +109,7 @@ std::vector<HardCase> company_cases() {
       degenerate("Duplicates", {lifted("a", 320, 360), lifted("b", 320, 360)}, 6, 5),
       degenerate("ConflictingDuplicatesMeetInTheMiddle",
                  {lifted("a", 325, 360), lifted("b", 325, 290)}, 6, 35.1),
-      degenerate("InAdjacentColumns", {upright("a", 325, 305), upright("b", 335, 355)}, 26, 20),
+      degenerate("InAdjacentColumns", {upright("a", 325, 305), upright("b", 335, 355)}, 30, 20),
       degenerate("InOneColumn", {upright("a", 323, 303), upright("b", 327, 347)}, 6, 21),
       degenerate("Crossing",
                  {line("a", {155, 325}, {495, 325}, {165, 267}, {485, 383}),

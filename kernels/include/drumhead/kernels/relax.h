@@ -4,7 +4,8 @@
 // rows:
 //   [clear d or add the prolonged coarse correction] → nodes red → nodes black → near nodes of
 //   even, then of odd rows → volume rows, 2×2 colours → curve rows → curve rows and volume rows in
-//   reverse → [residual, restricted to the coarser level].
+//   reverse → [the same in the band beside the curves] → [residual, restricted to the coarser
+//   level].
 // Nodes: Gauss–Seidel, u_i += (f_i − (H d)_i)/K_ii. Volume and curve rows: Kaczmarz in the D = diag
 // K inner product, invariant to the scaling of the multipliers (the α, β of Setaluri et al. 2014,
 // Eq. 4).
@@ -92,6 +93,9 @@ struct RelaxStages {
   VolumeSweeps volume = VolumeSweeps::twice;
   /// With Sweeps::all, near nodes and parts of special cells are relaxed once more at the end.
   bool curves_again = true;
+  /// Relaxations (at most 2) of the band beside the curves (Cuts::band) at the end, whatever
+  /// `sweeps` says: its nodes, its volume rows as often as all are swept, and all curve rows.
+  int band = 0;
 };
 
 /// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p)
@@ -100,10 +104,5 @@ struct RelaxStages {
 template <class T>
 void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch);
-
-/// One more relaxation, without transfers, of the nodes and cells in the band beside the curves
-/// (Cuts::band) and of the curve rows. Runs on the calling thread.
-template <class T>
-void relax_band(const LevelSystem<T>& level);
 
 }  // namespace drumhead::kernels
