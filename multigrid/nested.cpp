@@ -226,6 +226,7 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.linear = linear_options(hierarchy, l, start, options);
   newton.linear.solver = options.solver;
   newton.most_steps = start ? kStartSteps : finest ? kFinestSteps : kLevelSteps;
+  newton.lengthens = !start && smooth(hierarchy, options);
   // What steps on the coarser levels contract by the finest may then count on.
   newton.least_steps = finest ? 1 : newton.lengthens && l == 1 ? 3 : 2;
   const double share = easy && !finest ? kCoarseShare : kShare;
@@ -237,7 +238,6 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedO
   newton.tolerance_max = 0.0;
   newton.most_volume_gap = finest ? kMostVolumeGap : 0.0;
   newton.contrast = bool(level.compliance);
-  newton.lengthens = !start && smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff;
 }
 
 /// What the run itself is asked for besides, once it has a state to begin with.
