@@ -22,11 +22,9 @@ constexpr double kPressureJump = 0.4;
 // Before the restriction on the top level, once, from kStiff on twice: what the interpolated state
 // lacks is rough and beside the curves, one relaxation leaves most of it, and coarse levels take
 // that for something smooth. Moves of the second and third step at 800², in those of the one
-// before: S1 kappa 1 .46, .33 without and .38, .26 with it, S2 kappa 10 .43, .35 and .41, .27. With
-// what that allows (last_once_, steps that go further) whole solves take .77 and .76 of the time;
-// at kappa 1e4 S2 and S4 .68 and .77, and S2 on 400² 3 cycles instead of 10. Not where a mask of
-// kappa is: S3 takes .91, 1.0 and .93 of the steps at 200², 400², 800² (means of six offsets), and
-// as long.
+// before: S1 kappa 1 .46, .33 without and .38, .26 with it, S2 kappa 10 .43, .35 and .41, .27; S2
+// kappa 1e4 on 400² takes 3 cycles instead of 10. Not where a mask of kappa is: S3 takes .91, 1.0
+// and .93 of the steps at 200², 400², 800² (means of six offsets), and as long.
 constexpr double kStiff = 30.0;
 // Below it the list of special cells is not relaxed twice a sweep either: S2 kappa 10 at 160² 26.7
 // ms with once, 30.3 with twice, S4 14.8 and 15.2. The power method sees the largest eigenvalue

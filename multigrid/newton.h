@@ -5,7 +5,8 @@
 // theta grows eightfold where full steps are limited by the clamp rather than by the linear solver,
 // and shrinks with every shortened step. Plain Newton diverges on two thirds of the hard scenes. A
 // full step that brings all equations closer to zero is taken as it is; otherwise the step length
-// is halved on a merit function in which the multipliers are those of the full step.
+// is halved on a merit function in which the multipliers are those of the full step. With averaged
+// rows a step that points where the one before did goes up to half as far again.
 #include <drumhead/multigrid/warp.h>
 
 #include "krylov.h"
