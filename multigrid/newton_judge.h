@@ -109,7 +109,8 @@ class Judge {
   // Bounds of the contraction that a step is expected to have, and what is taken where none was
   // seen.
   static constexpr double kLeastRate = 0.03, kMostRate = 0.9, kUnknownRate = 0.5;
-  // A step that contracts by so much more than on the level before follows another course there.
+  // A step that contracts by so much more than on the level before follows another course there,
+  // where residuals are compared, too.
   static constexpr double kUnlike = 0.6;
   // So many steps in a row shorter than kCreep lead nowhere.
   static constexpr double kCreep = 1e-2;
@@ -150,9 +151,10 @@ class Judge {
     double rate = std::max({seen, seen_before_, options_.least_unknown_rate}), least = residual;
     seen_before_ = n > 0 ? seen : 0.0;
     const double before = n > 0 && n <= expected.size() ? expected[n - 1].rate : 0.0;
-    if (n < expected.size() && !(seen < kUnlike * before)) {
+    const bool smooth = n < expected.size() && expected[n].residual > 0.0;
+    if (n < expected.size() && !(smooth && seen < kUnlike * before)) {
       double worse = before > 0.0 ? std::max(1.0, seen / before) : 1.0;
-      if (expected[n].residual > 0.0) {
+      if (smooth) {
         worse = std::max(worse, residual / expected[n].residual);
         least = 0.0;
       }
