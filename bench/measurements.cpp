@@ -132,4 +132,13 @@ std::string figure(double value) {
   return buffer;
 }
 
+std::string ranged(const Json& row, const std::string& key) {
+  const std::string mean = figure(value(row, key.c_str()));
+  const std::string least = key + "_least", most = key + "_most";
+  if (!row.contains(most)) return mean;
+  const std::string to = figure(value(row, most.c_str()));
+  return mean + (row.contains(least) ? " (" + figure(value(row, least.c_str())) + "–" + to + ")"
+                                     : " (≤ " + to + ")");
+}
+
 }  // namespace drumhead::bench

@@ -49,5 +49,8 @@ std::vector<std::string> distinct(const Rows& rows, const std::function<std::str
 
 /// A number as people read it: three digits, no exponent between 1e-4 and 1e6; "–" for NaN.
 std::string figure(double value);
+/// The same of a mean, with the least and the most in brackets where the row has them ("key_least",
+/// "key_most").
+std::string ranged(const Json& row, const std::string& key);
 
 }  // namespace drumhead::bench

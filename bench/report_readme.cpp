@@ -58,9 +58,9 @@ std::string solves(const Measurements& measured) {
                       "|---|---|---:|---:|---:|---:|---:|---:|\n";
   for (const Json& row : measured.table("solve"))
     if (value(row, "n") == 800)
-      lines += line_of({scene_words(row), text(row, "curves"), figure(value(row, "work_units")),
-                        figure(value(row, "seconds")), figure(value(row, "bytes_per_node")),
-                        figure(value(row, "true_share")), figure(value(row, "discretisation_px")),
+      lines += line_of({scene_words(row), text(row, "curves"), ranged(row, "work_units"),
+                        ranged(row, "seconds"), figure(value(row, "bytes_per_node")),
+                        ranged(row, "true_share"), figure(value(row, "discretisation_px")),
                         figure(value(row, "gap_rms_px"))});
   return lines;
 }

@@ -18,6 +18,7 @@
 //     status           "converged", …; a reason in words where nothing came out
 //     seconds          of the whole solve, cutting or meshing included, wall clock
 //     work_units       the same in Hessian–vector products of the finest lattice
+//     …_least, …_most  of a value that is a mean, the range
 //     bytes            the solver's memory at its peak;  bytes_per_node
 //     unknowns         of the linear systems, where n does not tell
 //     newton, cycles   Newton steps on the finest lattice, cycles (iterations) there

@@ -43,7 +43,10 @@ const char* kRows = R"({
    "cycles":16,"converged":true},
   {"table":"rates","scene":"S2","kappa":"inf","n":128,"solver":"kaczmarz",
    "work_units_per_digit":null,"cycles":2,"converged":false},
-  {"table":"solve","scene":"S5","kappa":7.0,"n":100,"status":"limit","seconds":1.5}
+  {"table":"solve","scene":"S5","kappa":7.0,"n":100,"status":"limit","seconds":1.5},
+  {"table":"solve","scene":"S2","kappa":10.0,"curves":"averaged","n":800,"status":"converged",
+   "work_units":92.0,"work_units_least":88.0,"work_units_most":96.5,"newton":2.5,"cycles":3.0,
+   "true_share":0.05,"true_share_most":0.07}
  ]})";
 
 class BenchReport : public testing::Test {
@@ -122,6 +125,13 @@ TEST_F(BenchReport, prints_the_same_numbers_as_markdown) {
   const std::string tables = read("out");
   EXPECT_TRUE(holds(tables, "| drumhead, averaged, 1 thread | 0.002 | 0.004 |"));
   EXPECT_TRUE(holds(tables, "| 128² S2, kappa ∞ | 273 (16) | –* (2) |"));
+}
+
+TEST_F(BenchReport, shows_the_range_of_a_mean) {
+  ASSERT_EQ(report("--markdown rows.json"), 0) << read("err");
+  const std::string tables = read("out");
+  EXPECT_TRUE(holds(tables, "| S2, kappa 10 | averaged | 800² | converged | 92 (88–96.5) |"));
+  EXPECT_TRUE(holds(tables, "| 0.05 (≤ 0.07) |"));
 }
 
 TEST_F(BenchReport, makes_the_tables_of_a_readme_anew_and_leaves_the_rest) {
