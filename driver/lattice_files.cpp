@@ -65,7 +65,9 @@ void write_cells(const Solution& s, std::ostream& stream) {
 void write_lattice(const Solution& s, const std::filesystem::path& file) {
   const int columns = s.lattice.nx + 1;
   FloatExr exr = lattice_exr(s, columns, s.lattice.ny + 1, {"u", "v"});
-  exr.header.emplace_back(kLatticeError, std::to_string(s.report.discretisation_rms_px));
+  std::ostringstream error;  // std::to_string leaves nothing of 1e-7
+  error << s.report.discretisation_rms_px;
+  exr.header.emplace_back(kLatticeError, error.str());
   exr.header.emplace_back(kLatticeCurves, multigrid::name(s.report.curve_method));
   write_float_exr(exr, file, [&](int first, int rows, float* pixels) {
     std::size_t k = std::size_t(first) * std::size_t(columns);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/conforming.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cassert>
 #include <stdexcept>
@@ -239,17 +240,15 @@ namespace {
 
 void check_snap(const ConformOptions& options) {
   if (!(options.snap > 0.0 && options.snap <= 0.25))
-    throw std::invalid_argument("snap = " + std::to_string(options.snap) +
-                                ": must be above 0 and at most 0.25");
+    kernels::refuse("snap", options.snap, "above 0 and at most 0.25");
 }
 
 std::vector<double> weights_of(const std::vector<CurvePair>& curves) {
   std::vector<double> weights;
   for (const CurvePair& curve : curves) {
     if (!(curve.weight > 0.0))
-      throw std::invalid_argument("curve '" + curve.name +
-                                  "': weight = " + std::to_string(curve.weight) +
-                                  ": must be positive (infinity allowed)");
+      kernels::refuse("curve '" + curve.name + "': weight", curve.weight,
+                      "positive (infinity allowed)");
     weights.push_back(curve.weight);
   }
   return weights;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/cut_cells.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -107,9 +108,8 @@ class Cutter {
 
   CutCurve cut(const CurvePair& curve) {
     if (!(curve.weight > 0.0))
-      throw std::invalid_argument("curve '" + curve.name +
-                                  "': weight = " + std::to_string(curve.weight) +
-                                  ": must be positive (infinity allowed)");
+      kernels::refuse("curve '" + curve.name + "': weight", curve.weight,
+                      "positive (infinity allowed)");
     std::vector<Stay> stays;
     for_matched(curve, [&](const CubicBezier& source, const CubicBezier& target) {
       if (source.constant_speed() && target.constant_speed())

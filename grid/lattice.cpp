@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/lattice.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace drumhead::grid {
 namespace {
@@ -13,10 +12,7 @@ constexpr int kMostCells = 16384;
 // A side within this many cells of a whole number of cells is taken as whole.
 constexpr double kWhole = 1e-6;
 
-[[noreturn]] void refuse(const char* what, double value, const char* bound) {
-  throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) + ": must be " +
-                              bound);
-}
+using kernels::refuse;
 
 /// The power of two whose multiples coarsen well and cost at most a sixteenth more cells.
 int coarsening_step(int nx, int ny) {

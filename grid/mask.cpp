@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/mask.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -9,9 +10,7 @@
 namespace drumhead::grid {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what, double value, const char* bound) {
-  throw std::invalid_argument(what + " = " + std::to_string(value) + ": must be " + bound);
-}
+using kernels::refuse;
 
 void check(const Mask& mask, bool zero_allowed) {
   if (mask.width < 1 || mask.height < 1 ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/grid/material.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -12,9 +13,7 @@ namespace {
 // lattices to 200²; at 300 S1 stalls with folds (128²), at 1000 steps take hundreds of cycles.
 constexpr double kMostKappa = 1e6, kMostFoldFreeKappa = 100.0;
 
-[[noreturn]] void refuse(const std::string& what, double value, const char* bound) {
-  throw std::invalid_argument(what + " = " + std::to_string(value) + ": must be " + bound);
-}
+using kernels::refuse;
 
 void check_size(const char* what, std::size_t size, const Lattice& lattice) {
   if (size != 0 && size != lattice.cells())

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What callers of resample.h may get wrong, refused before anything is read or written.
+#include <drumhead/kernels/refuse.h>
 #include <drumhead/kernels/resample.h>
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -13,13 +13,11 @@ namespace drumhead::kernels {
 
 template <class T>
 void require(bool holds, const char* what, T value, std::string_view bound) {
-  if (!holds)
-    throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) + ": must be " +
-                                std::string(bound));
+  if (!holds) refuse(what, value, std::string(bound));
 }
 
 inline void require(const void* pointer, const char* what) {
-  if (!pointer) throw std::invalid_argument(std::string(what) + " = null: must be an array");
+  require(pointer != nullptr, what, "null", "an array");
 }
 
 inline void check_threads(int threads) { require(threads >= 0, "threads", threads, "at least 0"); }

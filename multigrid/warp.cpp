@@ -12,6 +12,7 @@
 
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/isa.h>
+#include <drumhead/kernels/refuse.h>
 #include <drumhead/kernels/threads.h>
 
 #include "analysis.h"
@@ -49,8 +50,7 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                 std::to_string(lattice.ny) + " cells: must be at least 1 × 1");
   const auto positive = [](const char* what, double value) {
     if (!(value > 0.0) || !std::isfinite(value))
-      throw std::invalid_argument(std::string(what) + " = " + std::to_string(value) +
-                                  ": must be positive and finite");
+      kernels::refuse(what, value, "positive and finite");
   };
   positive("cell_px of the lattice", lattice.cell_px);
   positive("side_px of the lattice", lattice.side_px);
@@ -60,17 +60,14 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                 std::to_string(lattice.origin_px.y) + "): must be finite");
   grid::check(problem.material, lattice);
   if (!(options.tolerance_px >= 0.0) || !std::isfinite(options.tolerance_px))
-    throw std::invalid_argument("tolerance = " + std::to_string(options.tolerance_px) +
-                                ": must be at least 0 and finite");
+    kernels::refuse("tolerance", options.tolerance_px, "at least 0 and finite");
   if (options.start) check_start(*options.start, lattice);
   const kernels::Model model = problem.material.model;
   if (kernels::isotropic(model) && options.solver != Solver::gcr)
     throw std::invalid_argument("solver " + std::string(name(options.solver)) + ": must be " +
                                 name(Solver::gcr) + " for model " +
                                 std::string(kernels::name(model)));
-  if (options.threads < 0)
-    throw std::invalid_argument("threads = " + std::to_string(options.threads) +
-                                ": must be at least 0");
+  if (options.threads < 0) kernels::refuse("threads", options.threads, "at least 0");
 }
 
 /// Appends the rows of a plane, `scale` times.

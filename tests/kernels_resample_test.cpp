@@ -347,11 +347,11 @@ TEST(ResampleRefusal, NamesValueAndBound) {
   EXPECT_EQ(made([](auto&, auto& map, auto&) { map.nx = 0; }),
             "nx of the lattice map = 0: must be at least 1");
   EXPECT_EQ(made([](auto&, auto& map, auto&) { map.cell_px = -0.5; }),
-            "cell_px of the lattice map = -0.500000: must be positive and finite");
+            "cell_px of the lattice map = -0.5: must be positive and finite");
   EXPECT_EQ(made([](auto&, auto& map, auto&) { map.v = nullptr; }),
             "v of the lattice map = null: must be an array");
   EXPECT_EQ(made([](auto&, auto&, auto& options) { options.detail = 17.0; }),
-            "detail = 17.000000: must be 1…16");
+            "detail = 17: must be 1…16");
   EXPECT_EQ(made([](auto&, auto&, auto& options) { options.threads = -1; }),
             "threads = -1: must be at least 0");
 }

@@ -29,10 +29,10 @@ std::string refused(const WarpProblem& problem, const SolverOptions& options = {
 TEST(WarpRefusal, NamesTheLatticesValueAndItsBound) {
   WarpProblem problem = shifted_disc(32);
   problem.lattice.cell_px = -2.0;
-  EXPECT_EQ(refused(problem), "cell_px of the lattice = -2.000000: must be positive and finite");
+  EXPECT_EQ(refused(problem), "cell_px of the lattice = -2: must be positive and finite");
   problem = shifted_disc(32);
   problem.lattice.side_px = 0.0;
-  EXPECT_EQ(refused(problem), "side_px of the lattice = 0.000000: must be positive and finite");
+  EXPECT_EQ(refused(problem), "side_px of the lattice = 0: must be positive and finite");
   problem = shifted_disc(32);
   problem.lattice.origin_px.y = kNan;
   EXPECT_EQ(refused(problem), "origin_px of the lattice = (0.000000, nan): must be finite");
