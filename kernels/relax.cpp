@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <drumhead/kernels/relax.h>
 
+#include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -88,6 +89,7 @@ void add_rows(const RelaxStages& stages, bool band, bool volume, bool cuts, Stag
 
 StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool volume, bool cuts,
                       bool restriction) {
+  if (stages.band < 0 || stages.band > 2) refuse("band", stages.band, "0…2");
   StageList list;
   if (stages.from_zero) list.add({Sweep::clear});
   if (prolong) list.add({Sweep::prolong});

@@ -236,6 +236,15 @@ TYPED_TEST(KernelsRelax, TheBandBesideCurvesEqualsItsPartOfTheAssembledRelaxatio
     });
 }
 
+TYPED_TEST(KernelsRelax, AnotherNumberOfBandsIsRefused) {
+  using T = TypeParam;
+  RandomLevel<T> level({.nx = 4, .ny = 4});
+  kernels::RowScratch<T> scratch(4, 1);
+  for (const int band : {-1, 3})
+    EXPECT_THROW(kernels::relax<T>(level.system(), {.band = band}, nullptr, nullptr, scratch),
+                 std::invalid_argument);
+}
+
 // The solution of the system is what no relaxation changes: the right-hand side is made from d.
 TYPED_TEST(KernelsRelax, LeaveASolutionInPlace) {
   using T = TypeParam;
