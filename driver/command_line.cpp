@@ -146,6 +146,9 @@ std::optional<Options> read_command_line(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Given given;
   add_flags(*warp, given);
+  if (argc > 1 && argv[1][0] != '-' && argv[1] != warp->get_name())
+    throw std::invalid_argument("no command '" + std::string(argv[1]) +
+                                "'; there is warp (see drumhead --help)");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

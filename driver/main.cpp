@@ -14,8 +14,10 @@ int main(int argc, char** argv) {
     const auto options = read_command_line(argc, argv);
     return options ? run_warp(*options) : int(kConverged);
   } catch (const std::bad_alloc&) {
-    std::fputs("drumhead: not enough memory; fewer --cells or a smaller picture need less\n",
-               stderr);
+    std::fputs(
+        "drumhead: not enough memory; fewer --cells, a smaller --margin or a smaller picture need "
+        "less\n",
+        stderr);
     return kBadInput;
   } catch (const std::exception& error) {
     std::string line = error.what();  // names and data quoted in it may hold line ends

@@ -102,6 +102,7 @@ void read_key(const fs::path& file, std::string_view name, const toml::node& nod
 }  // namespace
 
 void read_scene(const fs::path& file, Options& options) {
+  if (fs::is_directory(file)) fail(file.string(), "is a folder, not a scene");
   toml::table scene;
   try {
     scene = toml::parse_file(file.string());

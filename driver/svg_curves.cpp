@@ -130,6 +130,9 @@ class CurveReader {
                    svg_length(element.attribute("y").as_string("0"), view_.height).value_or(0)) *
                affine;
     } else if (!is_shape(element)) {
+      if (kind(element) == "text" || kind(element) == "image")
+        curves_.warnings.push_back(document_.named_place(element) +
+                                   " is not a path and no curve; Inkscape: Path > Object to Path");
       return;
     }
     if (suffix != Role::none && suffix != role) {

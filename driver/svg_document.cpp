@@ -117,14 +117,18 @@ std::string_view style_property(std::string_view style, std::string_view propert
 SvgDocument::SvgDocument(std::filesystem::path file) : file_(std::move(file)) {
   std::ifstream stream(file_, std::ios::binary);
   std::ostringstream text;
-  if (!stream || std::filesystem::is_directory(file_) || !(text << stream.rdbuf())) {
-    throw std::invalid_argument(file_.string() + ": cannot be read");
-  }
+  std::error_code error;
+  if (!std::filesystem::exists(file_, error))
+    throw std::invalid_argument(file_.string() + ": cannot be read: no such file");
+  if (!stream || std::filesystem::is_directory(file_, error))
+    throw std::invalid_argument(file_.string() + ": cannot be read: no file, or not permitted");
+  text << stream.rdbuf();
   text_ = text.str();
   const auto result =
       xml_.load_buffer(text_.data(), text_.size(), pugi::parse_full | pugi::parse_ws_pcdata);
   if (!result) {
-    throw std::invalid_argument(at_line(result.offset) + ": " + result.description());
+    throw std::invalid_argument(at_line(result.offset) +
+                                ": is not well-formed XML: " + result.description());
   }
   root_ = xml_.document_element();
   if (kind(root_) != "svg") throw std::invalid_argument(file_.string() + ": is not an SVG drawing");

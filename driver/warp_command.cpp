@@ -46,7 +46,8 @@ std::vector<fs::path> outputs_of(const Options& options) {
 }
 
 void check_files(Options& options) {
-  if (options.picture.empty()) throw std::invalid_argument("the scene names no picture");
+  if (options.picture.empty())
+    throw std::invalid_argument(options.scene.string() + ": the scene names no picture");
   if (options.curves.empty() && has_extension(options.picture, ".svg"))
     options.curves = options.picture;
   if (options.curves.empty()) {

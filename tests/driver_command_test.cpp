@@ -82,7 +82,8 @@ TEST_F(DriverCommand, RefusesAMissingPicture) {
 }
 
 TEST_F(DriverCommand, RefusesMissingCurves) {
-  expect_refused({"warp", "photo.png", "none.svg", "-o", "out.png"}, {"none.svg: cannot be read"});
+  expect_refused({"warp", "photo.png", "none.svg", "-o", "out.png"},
+                 {"none.svg: cannot be read: no such file"});
   expect_refused({"warp", "photo.png", "-o", "out.png"}, {"photo.png: no CURVES.svg was given"});
 }
 
@@ -141,6 +142,7 @@ TEST_F(DriverCommand, RefusesOutputsThatWouldReplaceOneAnotherOrAnInput) {
 
 TEST_F(DriverCommand, RefusesUnknownWordsAndMissingOnes) {
   expect_refused({}, {"no command"});
+  expect_refused({"wrap", "photo.png", "curves.svg"}, {"no command 'wrap'; there is warp"});
   expect_refused({"wrap"}, {"wrap"});
   expect_refused({"warp"}, {"no PICTURE"});
   expect_refused({"warp", "photo.png", "curves.svg"}, {"no output"});

@@ -248,12 +248,23 @@ TEST(DriverSvg, ErrorsNameFileLineAndElement) {
            {"<g id='a-source'>" + a + "</g>", "the suffix belongs on the name of a path"},
            {a + b, "curves.svg: no curves"},
            {"<g id='Source'>" + a + "</g>", "curves.svg: no curves"},
-           {"<g id='source'>", "curves.svg:3: Start-end tags mismatch"}}) {
+           {"<g id='source'>", "curves.svg:3: is not well-formed XML: Start-end tags mismatch"}}) {
     const std::string message = error_of(elements);
     EXPECT_NE(message.find(error), std::string::npos) << elements << "\n  " << message;
     EXPECT_NE(message.find("curves.svg"), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
+}
+
+TEST(DriverSvg, TextAmongCurvesIsLeftOutWithAWarning) {
+  const Scratch scratch;
+  const auto file = scratch.write(
+      "a.svg",
+      "<svg><g id='pin'><title>t</title><path id='a' d='M1 1L9 9'/><text id='b'/></g></svg>");
+  const SvgCurves read = read_curves(SvgDocument(file), 10, 10);
+  EXPECT_EQ(read.curves.size(), 1u);
+  ASSERT_EQ(read.warnings.size(), 1u);
+  EXPECT_NE(read.warnings[0].find("a.svg:1: text 'b' is not a path"), std::string::npos);
 }
 
 TEST(DriverSvg, TheViewMustBeARectangle) {
