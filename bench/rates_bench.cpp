@@ -55,12 +55,10 @@ struct Entry {
 template <class T>
 Entry measure(scenes::NewtonLevel<T>& level, Solver solver) {
   const int more = solver == Solver::minres ? std::max(1, level.level().nx / kEverything) : 1;
-  const bool stiff = level.system().hierarchy().traits().stiffness >= multigrid::kStiffParts;
   multigrid::LinearOptions options{.solver = solver,
                                    .content = kReduction,
                                    .reduction = kReduction,
-                                   .most_cycles = more * kMostCycles,
-                                   .part_patches = stiff && level.level().conforming};
+                                   .most_cycles = more * kMostCycles};
   Entry entry;
   const Clock::time_point start = Clock::now();
   entry.report = level.solve(options);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "conforming_pressures.h"
 #include "curve_nodes.h"
 #include "held_nodes.h"
 #include "made_of_curves.h"
@@ -28,7 +27,6 @@ class Conformer {
     list_nodes();
     visits_ = NodeVisits(std::move(nodes_.visits));
     hold_nodes(visits_, weights_, lattice_, cells_);
-    share_pressures(cells_, options_.least_area);
     for (const auto& [number, how] : simplified_)
       cells_.simplified_cells.push_back(
           {double(number % lattice_.nx) + 0.5, double(number / lattice_.nx) + 0.5});
@@ -359,6 +357,28 @@ int ConformingCells::find_node(int i, int j) const {
              end = node_column.begin() + node_begin[std::size_t(j) + 1];
   const auto at = std::lower_bound(begin, end, i);
   return at != end && *at == i ? int(at - node_column.begin()) : -1;
+}
+
+int ConformingCells::part_at(int c, Point at) const {
+  const int j = int(std::ranges::upper_bound(cell_begin, c) - cell_begin.begin()) - 1;
+  int nearest = part_begin[std::size_t(c)];
+  double best = -1e300;             // the least barycentric coordinate: how far inside the triangle
+  constexpr double kInside = 1e-6;  // in no other triangle then
+  for (int p = part_begin[std::size_t(c)]; p < part_begin[std::size_t(c) + 1]; ++p)
+    for (int t = part_triangle_begin[std::size_t(p)]; t < part_triangle_begin[std::size_t(p) + 1];
+         ++t) {
+      const PartTriangle& tri = triangle[std::size_t(t)];
+      double least = 1.0;
+      for (std::size_t n = 0; n < 3 && least > best; ++n) {
+        const int code = part_node[std::size_t(part_node_begin[std::size_t(p)] + tri.node[n])];
+        least = std::min(least, 1.0 + dot(tri.gradient[n], at - rest(c, j, code)));
+      }
+      if (least <= best) continue;
+      best = least;
+      nearest = p;
+      if (best > kInside) return p;
+    }
+  return nearest;
 }
 
 }  // namespace drumhead::grid

@@ -45,6 +45,16 @@ T volume_change(const SpecialCells<T>& cells, int part, F&& displacement) {
   return T(0.5) * twice;
 }
 
+/// visit(strength, neighbour) for the parts that the equations join with part p by a jump.
+template <class T, class F>
+void for_own_jumps(const SpecialRows<T>& rows, int p, F&& visit) {
+  const SpecialCells<T>& cells = rows.cells();
+  for (int k = cells.neighbour_begin[std::size_t(p)]; k < cells.neighbour_begin[std::size_t(p) + 1];
+       ++k)
+    if (const T strength = rows.own_jump(k); strength != T(0))
+      visit(strength, cells.neighbour[std::size_t(k)].part);
+}
+
 /// What regular cell q of sw, se, nw, ne around node (i, j) adds to −∂E/∂x̂ there.
 template <class T>
 Vector2<T> regular_force(const Membrane<T>& m, int i, int j, int q) {
@@ -106,6 +116,9 @@ bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, in
   }
   const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, displacement);
   f.listed[p] = area * compliance_at(m, i, j) * m.listed[p] - change;
+  for_own_jumps(rows, p, [&](T strength, int other) {
+    f.listed[p] += strength * (m.listed[p] - m.listed[other]);
+  });
   return change < -area;
 }
 
@@ -197,11 +210,39 @@ void add_spring_energy(const SpecialRows<T>& rows, const Unknowns<const T>& d, T
   }
 }
 
+/// Energies of part p, A (J − 1) = `change`, with compliance c0. Joined parts have the Lagrangian's
+/// at their pressures, since the least energy of one is no longer A (J − 1)²/(2 c0).
+template <class T>
+void add_part_energy(const Membrane<T>& m, const Unknowns<const T>& d, int p, double c0,
+                     double change, EnergySums& sums) {
+  const double soft = 0.01 / double(m.mu.value);  // as in energy_row
+  const double area = double(m.special->cells().area[std::size_t(p)]);
+  const auto pressure_of = [&](int n) {
+    return double(m.listed[n]) + (d.listed ? double(d.listed[n]) : 0.0);
+  };
+  const double pressure = pressure_of(p);
+  double jumps = 0.0, squares = 0.0;
+  bool joined = false;
+  for_own_jumps(*m.special, p, [&](T strength, int other) {
+    const double jump = pressure - pressure_of(other);
+    jumps += double(strength) * jump;
+    squares += double(strength) * jump * jump;
+    joined = true;
+  });
+  const double c = change / area - pressure * c0 - jumps / area;
+  sums.volume_merit += c0 < soft || joined
+                           ? area * (pressure * c + 0.5 * c * c / std::max(c0, soft))
+                           : 0.5 * change * change / (area * c0);
+  if (joined)
+    sums.volume += pressure * change - 0.5 * area * c0 * pressure * pressure - 0.25 * squares;
+  else if (c0 > 0.0)
+    sums.volume += 0.5 * change * change / (area * c0);
+}
+
 template <class T>
 void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step, EnergySums& sums,
                         int j) {
   const SpecialCells<T>& cells = m.special->cells();
-  const double soft = 0.01 / double(m.mu.value);  // as in energy_row
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
     const int i = cells.column[std::size_t(n)];
     auto displacement = [&](int vertex) {
@@ -226,15 +267,9 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
     const double c0 = double(compliance_at(m, i, j));
     bool inverted = false;
     for_parts(cells, n, [&](int p) {
-      const double area = double(cells.area[std::size_t(p)]);
-      const double change = double(volume_change(cells, p, displacement)) / area;
-      inverted = inverted || change < -1.0;
-      if (!m.pressure) return;
-      const double pressure = double(m.listed[p]) + (d.listed ? double(d.listed[p]) : 0.0);
-      const double c = change - pressure * c0;
-      sums.volume_merit += c0 < soft ? area * (pressure * c + 0.5 * c * c / soft)
-                                     : 0.5 * area * change * change / c0;
-      if (c0 > 0.0) sums.volume += 0.5 * area * change * change / c0;
+      const double change = double(volume_change(cells, p, displacement));
+      inverted = inverted || change < -double(cells.area[std::size_t(p)]);
+      if (m.pressure) add_part_energy(m, d, p, c0, change, sums);
     });
     sums.inverted_cells += inverted;
   }

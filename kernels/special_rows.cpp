@@ -25,12 +25,7 @@ std::size_t stencil_place(int own, int other) {
 /// Corners of a cell that follow and precede one in the sense 00, 10, 11, 01.
 constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
 
-// The jump between two parts in shares of that between regular cells. Pieces of sides are short, L²
-// in the term more so, and the nodes that a coarse level lacks there give way more easily than one
-// in the middle of an edge. V-cycles that take a residual down by 1000 at 128², kappa 1e4, with 1,
-// 2, 4, 8: S1 22, 21, 20, 20 (and F-cycles that diverge with 1); S2 30, 28, 29, 31; S4 20, 20, 21,
-// 21.
-constexpr double kPartJump = 4.0;
+constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};  // by PartNeighbour::side
 
 /// Stiffness of the spring of lattice node (i, j), which is not known.
 template <class T>
@@ -54,6 +49,7 @@ SpecialRows<T>::SpecialRows(const SpecialCells<T>& cells, const Membrane<T>& mem
     list_fringe(membrane.ux.rows);
   else
     list_couplings();
+  if (membrane.pressure && membrane.part_jump != T(0)) set_own_jumps(membrane);
   soft_ = SoftRows<T>(*this, membrane);
 }
 
@@ -183,15 +179,39 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
   }
 }
 
-/// The jump term of pressure_jump.h between parts, and between parts and regular cells.
+/// gamma h²/(mu_a + mu_b), where kappa differs times the lesser by the greater: pressures jump
+/// where kappa does.
+template <class T>
+void SpecialRows<T>::set_own_jumps(const Membrane<T>& m) {
+  const SpecialCells<T>& cells = *cells_;
+  own_jump_.assign(cells.neighbour.size(), T(0));
+  for_special(cells, [&](int n, int i, int j) {
+    for_parts(cells, n, [&](int p) {
+      for (int k = cells.neighbour_begin[std::size_t(p)];
+           k < cells.neighbour_begin[std::size_t(p) + 1]; ++k) {
+        const PartNeighbour& other = cells.neighbour[std::size_t(k)];
+        if (other.part < 0) continue;
+        const int i2 = i + kEast[std::size_t(other.side)], j2 = j + kNorth[std::size_t(other.side)];
+        const auto [stiff, soft] = std::minmax({compliance_at(m, i, j), compliance_at(m, i2, j2)});
+        const T alike = stiff == soft ? T(1) : stiff / soft;
+        own_jump_[std::size_t(k)] =
+            alike * m.part_jump * m.spacing * m.spacing / (mu_at(m, i, j) + mu_at(m, i2, j2));
+      }
+    });
+  });
+}
+
+/// The equations' own jumps, and the jump term of pressure_jump.h between parts, and between parts
+/// and regular cells.
 template <class T>
 void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
   const SpecialCells<T>& cells = *cells_;
   jump_.assign(cells.neighbour.size(), T(0));
-  has_jumps_ = m.pressure_jump != T(0);
+  has_border_jumps_ = m.pressure_jump != T(0);
+  has_jumps_ = has_border_jumps_ || !own_jump_.empty();
   part_jumps_.assign(has_jumps_ ? part_.size() : 0, {});
   if (!has_jumps_) return;
-  if (border_begin_.empty()) list_borders();
+  if (has_border_jumps_ && border_begin_.empty()) list_borders();
   for_special(cells, [&](int n, int i, int j) {
     for_parts(cells, n, [&](int p) {
       std::ranges::fill(part_jumps_[std::size_t(p)].part, p);
@@ -206,7 +226,6 @@ void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
 template <class T>
 void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i, int j) {
   const SpecialCells<T>& cells = *cells_;
-  constexpr int kEast[] = {0, 1, 0, -1}, kNorth[] = {-1, 0, 1, 0};
   const PartNeighbour& other = cells.neighbour[std::size_t(k)];
   const int begin = cells.vertex_begin[p], end = cells.vertex_begin[p + 1];
   const PartVertex<T>& from = cells.vertex[std::size_t(other.vertex)];
@@ -216,9 +235,9 @@ void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i,
                    v = at_vertex(cells, m.ux, m.uy, i, j, to.vertex);
   const T ex = (to.x - from.x) + (v.x - u.x), ey = (to.y - from.y) + (v.y - u.y);
   const int side = other.side;
-  const T mu = mu_at(m, i, j) + mu_at(m, i + kEast[side], j + kNorth[side]);
-  const T factor = other.part >= 0 ? T(kPartJump) : T(1);
-  const T jump = factor * T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu;
+  const T mu =
+      mu_at(m, i, j) + mu_at(m, i + kEast[std::size_t(side)], j + kNorth[std::size_t(side)]);
+  const T jump = T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu + own_jump(k);
   jump_[std::size_t(k)] = jump;
   part_[p].jumps += jump;
   PartJumps<T>& row = part_jumps_[p];
@@ -269,7 +288,7 @@ std::size_t SpecialRows<T>::bytes() const {
     indices += list->size();
   return indices * sizeof(int) + near_.size() * (sizeof(NearNode) + sizeof(NearRow<T>)) +
          diagonal_.size() * sizeof(DiagonalRow<T>) + visit_.size() * sizeof(CellVisit<T>) +
-         part_.size() * sizeof(PartRow<T>) + jump_.size() * sizeof(T) +
+         part_.size() * sizeof(PartRow<T>) + (jump_.size() + own_jump_.size()) * sizeof(T) +
          part_jumps_.size() * sizeof(PartJumps<T>) + border_.size() * sizeof(BorderJump<T>) +
          further_.size() * sizeof(PartCoupling<T>) + block_.size() * sizeof(BlockRow<T>) +
          fringe_.size() * sizeof(FringeCell) + tangent_.size() * sizeof(T) + soft_.bytes();

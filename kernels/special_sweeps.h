@@ -65,7 +65,7 @@ void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
       }
     }
   });
-  if (!rows.has_jumps()) return;
+  if (!rows.has_border_jumps()) return;
   // The vectorised kernels took dP of special cells as 0.
   for (const int parity : {0, 1})
     for (const BorderJump<T>& border : rows.borders(j, parity)) {
@@ -140,7 +140,7 @@ void keep_near_row(const SpecialRows<T>& rows, const Unknowns<T>& d, int parity,
 template <class T, class F>
 void with_border_jumps(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
                        int j, T* kept, F&& sweep) {
-  if (!rows.has_jumps()) return sweep();
+  if (!rows.has_border_jumps()) return sweep();
   for (const int parity : {0, 1})
     for (const BorderJump<T>& border : rows.borders(j, parity)) {
       T& volume = f.p.half(j, parity)[border.half];

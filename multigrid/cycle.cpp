@@ -142,11 +142,6 @@ void Cycle<T>::relax_patches(grid::MemoryMeter& meter) {
 }
 
 template <class T>
-void Cycle<T>::relax_parts(grid::MemoryMeter& meter) {
-  for (int l = top_; l + 1 < hierarchy_.size(); ++l) part_patches_.emplace_back(system(l), meter);
-}
-
-template <class T>
 void Cycle<T>::run(CycleKind kind, bool from_zero) {
   descend(top_, kind, from_zero);
 }
@@ -205,14 +200,7 @@ void Cycle<T>::relax_up(int l) {
   if (sweeps_once(l)) stages.volume = kernels::VolumeSweeps::forwards;
   if (!smoother_ && patches_.empty()) stages.band = band_up_;
   if (smoother_ || !patches_.empty()) stages.sweeps = kernels::Sweeps::none;
-  if (!part_patches_.empty()) {
-    kernels::relax<T>(fine, {.sweeps = kernels::Sweeps::none}, &correction, nullptr,
-                      hierarchy_.scratch());
-    part_patches_[std::size_t(l - top_)].relax(fine);
-    kernels::relax<T>(fine, stages, nullptr, nullptr, hierarchy_.scratch());
-  } else {
-    kernels::relax<T>(fine, stages, &correction, nullptr, hierarchy_.scratch());
-  }
+  kernels::relax<T>(fine, stages, &correction, nullptr, hierarchy_.scratch());
   if (!patches_.empty()) {
     patches_[std::size_t(l - top_)].relax(fine);
     kernels::relax<T>(fine, {}, nullptr, nullptr, hierarchy_.scratch());

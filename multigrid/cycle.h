@@ -11,7 +11,6 @@
 #include "curve_patch.h"
 #include "hierarchy.h"
 #include "kaczmarz_smoother.h"
-#include "part_patch.h"
 
 namespace drumhead::multigrid {
 
@@ -36,10 +35,6 @@ class Cycle {
 
   /// Relaxes all rows along the curves at once, too, as exact rows need (curve_patch.h).
   void relax_patches(grid::MemoryMeter& meter);
-
-  /// Relaxes the parts of special cells all at once, too, after the coarse correction
-  /// (part_patch.h).
-  void relax_parts(grid::MemoryMeter& meter);
 
   /// Relaxes the band beside averaged curves once more before the first restriction, for a state
   /// that was interpolated from a coarser level.
@@ -73,7 +68,6 @@ class Cycle {
   CoarseSolver<T> bottom_;
   std::optional<KaczmarzSmoother<T>> smoother_;
   std::vector<CurvePatch<T>> patches_;      ///< of all levels but the bottom, from the top
-  std::vector<PartPatch<T>> part_patches_;  ///< likewise
   std::vector<T> residual_;
   int band_down_ = 0, band_up_ = 0;  ///< RelaxStages::band of the top level, and of all
   bool curves_again_ = true;

@@ -42,8 +42,7 @@ LinearOptions linear_options(const LinearOptions& before, double reduction, std:
           .content = reduction,
           .reduction = reduction,
           .most_cycles = strip ? kStripCycles : std::max(kCycles, directions),
-          .directions = directions,
-          .part_patches = before.part_patches};
+          .directions = directions};
 }
 
 void append(const NewtonReport& more, NewtonReport& done) {

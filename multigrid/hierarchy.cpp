@@ -27,9 +27,6 @@ constexpr double kRelief = 10.0;
 // 1, 200²: at corners that have not, the energy of what is left is 5 % of the whole).
 constexpr double kCornerStiffness = 1e4;
 
-// Every part has a pressure of its own.
-constexpr grid::ConformOptions kConform{.least_area = 0.0};
-
 // Fields that take so much together lie in one piece. Smaller ones stay apart, so that a tool that
 // looks for accesses beyond an end finds them.
 constexpr std::size_t kOnePiece = std::size_t(1) << 21;
@@ -254,13 +251,13 @@ void Hierarchy<T>::set_wanted(int l, std::vector<grid::Point> wanted) {
 template <class T>
 void Hierarchy<T>::conform(const std::vector<grid::CurvePair>& curves, const grid::Lattice& lattice,
                            grid::MemoryMeter& meter) {
-  conform(grid::conform_levels(curves, lattice, size(), kConform), meter);
+  conform(grid::conform_levels(curves, lattice, size()), meter);
 }
 
 template <class T>
 std::unique_ptr<grid::CurveConformer> Hierarchy<T>::make_conformer(
     const grid::Lattice& lattice) const {
-  return std::make_unique<grid::CurveConformer>(lattice, size(), kConform);
+  return std::make_unique<grid::CurveConformer>(lattice, size());
 }
 
 template <class T>

@@ -180,7 +180,6 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
   // With the clamp of a large theta the cycle itself diverges (S4, kappa 1e4, 128²: 22 times a
   // cycle; the definite one leaves .16).
   Cycle<T> cycle(hierarchy, top, pressure, Cycle<T>::kDefinite);
-  if (options.part_patches && pressure) cycle.relax_parts(meter);
   if (options.band) cycle.relax_band();
   // Without the jump in the equations a cycle's own residual is of another system.
   const bool same = hierarchy.traits().jump == hierarchy.traits().jump_inside;

@@ -18,8 +18,7 @@ struct LinearOptions {
   int most_cycles = 30;
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
-  bool part_patches = false;  ///< cycles relax the parts of special cells all at once, too
-  bool band = false;          ///< Cycle::relax_band
+  bool band = false;  ///< Cycle::relax_band
 };
 
 struct LinearReport {

@@ -63,10 +63,13 @@ constexpr double kAveragedRate = 0.35;
 // 78, 194, and .04, .06, .06 of the discretisation error left; with these 21, 45, 114 and .12, .15,
 // .15. More than 0.8 is nothing solved (newton_judge.h).
 constexpr double kGentleContent = 0.8, kCoarseShare = 0.3, kGentleStart = 0.02;
-// Stiffer ones: where cycles do not reach kStartContent, a little of GCR, which small lattices with
-// no coarser start could not do with. S2 and S4 at kappa 100 with kContent and a tenth: 88 and 57
-// ms at 200², 405 and 325 at 400²; with these 91, 55, 260, 146.
+// Stiffer ones: likewise after a level of full steps alone, where there is no mask of kappa; S2 and
+// S4 at kappa 100 otherwise take 35 and 26 ms instead of 26 and 20 at 100², 219 and 160 instead of
+// 140 and 90 at 400². Else, and on the start level, kStartContent, and where cycles do not reach
+// that a little of GCR: loosely solved S5, kappa 100, 100² does not end at three of six offsets,
+// and S3, 400², takes 48 cycles instead of 29.
 constexpr double kStiffReduction = 0.5;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kSmallNodes = 20000;
 // Up to these kappa/mu, on the start level and on the others, V-cycles take the place of F-cycles
 // on lattices of few nodes, where a visit to a coarse level costs more than its nodes. S1 kappa 1,
@@ -99,27 +102,43 @@ bool averaged(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
   return !hierarchy.conforming() && !options.exact && !kernels::isotropic(hierarchy.traits().model);
 }
 
-/// And without contrast: what is left after a cycle is one smooth field, much the same on every
+/// Without contrast moves of successive steps point the same way.
+template <class T>
+bool aligned(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
+  return !options.exact && !kernels::isotropic(hierarchy.traits().model) &&
+         !hierarchy[0].compliance;
+}
+
+/// Of averaged rows so what is left after a cycle is one smooth field, much the same on every
 /// level.
 template <class T>
 bool smooth(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
-  return averaged(hierarchy, options) && !hierarchy[0].compliance;
+  return averaged(hierarchy, options) && aligned(hierarchy, options);
+}
+
+/// Conforming cells: whether one cycle a step does on a level after the start. `shortened`: steps
+/// on the level before.
+template <class T>
+bool loose(const Hierarchy<T>& hierarchy, const NestedOptions& options, bool shortened) {
+  return gentle(hierarchy) || (hierarchy.conforming() && aligned(hierarchy, options) && !shortened);
 }
 
 template <class T>
-LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start,
+LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, bool shortened,
                              const NestedOptions& options) {
   const Level<T>& level = hierarchy[l];
   LinearOptions linear;
   linear.content = start ? kStartContent : kContent;
   if (gentle(hierarchy)) {
-    linear.content = start ? kContent : kGentleContent;
+    linear.content = kContent;
     linear.reduction = kReduction;
   } else if (level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.content = kStartContent;
     if (!start) linear.reduction = kStiffReduction;
-    linear.part_patches =
-        !start && bool(level.pressure) && hierarchy.traits().stiffness >= kStiffParts;
+  }
+  if (!start && loose(hierarchy, options, shortened)) {
+    linear.content = kGentleContent;
+    linear.reduction = kReduction;
   }
   const double most_for_v = start ? kVCyclesFirst : kVCycles;
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
@@ -217,21 +236,22 @@ void expect(const std::vector<Contraction>& observed, bool smooth,
   for (Contraction& contraction : expected) contraction.residual = 0.0;
 }
 
-/// What every level is asked for.
+/// What every level is asked for. `shortened`: steps on the level before.
 template <class T>
-void set_options(const Hierarchy<T>& hierarchy, int l, bool start, const NestedOptions& options,
-                 NewtonOptions& newton) {
+void set_options(const Hierarchy<T>& hierarchy, int l, bool start, bool shortened,
+                 const NestedOptions& options, NewtonOptions& newton) {
   const Level<T>& level = hierarchy[l];
-  const bool finest = l == 0, easy = gentle(hierarchy);
-  newton.linear = linear_options(hierarchy, l, start, options);
+  const bool finest = l == 0;
+  newton.linear = linear_options(hierarchy, l, start, shortened, options);
   newton.linear.solver = options.solver;
   newton.most_steps = start ? kStartSteps : finest ? kFinestSteps : kLevelSteps;
-  newton.lengthens = !start && smooth(hierarchy, options);
+  newton.lengthens = !start && aligned(hierarchy, options);
   // What steps on the coarser levels contract by the finest may then count on.
-  newton.least_steps = finest ? 1 : newton.lengthens && l == 1 ? 3 : 2;
-  const double share = easy && !finest ? kCoarseShare : kShare;
+  newton.least_steps = finest ? 1 : !start && l == 1 && smooth(hierarchy, options) ? 3 : 2;
+  const bool coarsely = !finest && loose(hierarchy, options, shortened);
+  const double share = coarsely ? kCoarseShare : kShare;
   newton.share_of_change = start ? 0.0 : share * options.discretisation_share;
-  const double start_error = easy                           ? kGentleStart
+  const double start_error = gentle(hierarchy)              ? kGentleStart
                              : averaged(hierarchy, options) ? kAveragedStart
                                                             : kStartError;
   newton.tolerance_rms = start ? start_error * double(level.spacing) : 0.0;
@@ -284,14 +304,14 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
   ClampSchedule clamp;
   NewtonOptions newton_options;
   std::vector<LevelChange> changes;
-  bool rounded = false;
+  bool rounded = false, shortened = false;
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
     const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, start);
     Newton<T> newton(hierarchy, l, meter);
     std::optional<LevelCopy<T>> coarse;
     std::vector<NewtonStep> path;  // to the state that the level's own run begins with
-    set_options(hierarchy, l, l == start, options, newton_options);
+    set_options(hierarchy, l, l == start, shortened, options, newton_options);
     if (l == start) {
       if (options.limit_kappa) options.limit_kappa(kFirstKappa);
       path = find_start(hierarchy, start, options, newton_options, newton, clamp,
@@ -312,6 +332,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     NewtonReport done = newton.run(
         newton_options, clamp, part_of(progress, way ? kPathShare : 0.0, exact ? kJumpShare : 1.0));
     set_least_rates(hierarchy, options, newton_options);
+    shortened = std::ranges::any_of(done.steps, [](const NewtonStep& s) { return s.step < 1.0; });
     if (l != start) expect(done.contractions, smooth(hierarchy, options), newton_options.expected);
     if (exact && !ended_early(done.status))
       done = until_at_rest(hierarchy, newton_options.linear, newton, done,
@@ -322,8 +343,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.volume_gap = done.volume_gap;
     rounded = done.rounded;
     LevelChange change{done.change_rms, done.change_max};
-    double share =
-        l == start ? std::numeric_limits<double>::quiet_NaN() : options.discretisation_share;
+    double share = l == start ? kUnknown : options.discretisation_share;
     if (coarse) {
       change = coarse->change(hierarchy[l + 1], level);
       changes.push_back(change);

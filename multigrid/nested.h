@@ -11,13 +11,6 @@ namespace drumhead::multigrid {
 
 /// Exact rows: kappa of the first state, from which it grows (exact_rows.h).
 inline constexpr double kFirstKappa = 10.0;
-// Steps (cycles) and ms without and with it, kappa 1e4: S2 100² 13 (59) 155, 6 (13) 47; 400² 14
-// (38) 905, 5 (10) 271; S4 200² 19 (93) 389, 7 (14) 75. At kappa 100 S2 takes 9 % less, S4 7 %
-// more. After the sweeps instead of before them S5 ends with 3 % more energy, and with a second one
-// before the restriction S2 turned by 180° stalls.
-/// From this kappa/mu on cycles of conforming cells relax all parts at once, too (part_patch.h),
-/// but on the start level, where S5 then takes 60 steps and more (32²).
-inline constexpr double kStiffParts = 300.0;
 
 struct NestedOptions {
   Solver solver = Solver::gcr;

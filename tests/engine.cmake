@@ -41,7 +41,7 @@ drumhead_test(NAME multigrid_curve_patch_test SOURCES multigrid_curve_patch_test
   LINK drumhead_kernel_oracle drumhead::multigrid LABEL unit)
 target_include_directories(multigrid_curve_patch_test PRIVATE ${PROJECT_SOURCE_DIR}/multigrid)
 # The private headers of multigrid/, whose levels make special cells for the kernels.
-foreach(name conforming conforming_cycle conforming_relaxation curve_strip judge part_patch regions)
+foreach(name conforming conforming_cycle conforming_relaxation curve_strip judge regions)
   drumhead_test(NAME multigrid_${name}_test
     SOURCES multigrid_${name}_test.cpp support/scene_problem.cpp
     LINK drumhead_oracle drumhead::multigrid LABEL unit)

@@ -175,27 +175,6 @@ TEST(GridConformingRules, ACurveAgainstTheBoundaryIsAConflictThere) {
   EXPECT_EQ(cells.conflicts[0].rest.x, 0.0);
 }
 
-TEST(GridConformingRules, SmallPartsShareThePressureOfANeighbourOnTheirSide) {
-  const CurvePair curve = pinned(round({6.13, 5.21}, 3.3));
-  const ConformingCells own = conform({curve}, unit_lattice(12, 11), {.least_area = 0.0}),
-                        shared = conform({curve}, unit_lattice(12, 11), {.least_area = 0.5});
-  EXPECT_EQ(own.pressures, own.parts());
-  EXPECT_LT(shared.pressures, shared.parts());
-  std::vector<double> area(std::size_t(shared.pressures), 0.0);
-  std::vector<int> side(std::size_t(shared.pressures), 0);
-  for (int p = 0; p < shared.parts(); ++p) {
-    const std::size_t k = std::size_t(shared.part_pressure[std::size_t(p)]);
-    area[k] += shared.part_area[std::size_t(p)];
-    // Parts next to the chord have their centre on its own side of the circle.
-    const double r = length(shared.part_centre[std::size_t(p)] - Point{6.13, 5.21});
-    if (std::abs(r - 3.3) < 0.06) continue;
-    const int here = r < 3.3 ? -1 : 1;
-    EXPECT_NE(side[k], -here);
-    side[k] = here;
-  }
-  for (const double a : area) EXPECT_GE(a, 0.5);
-}
-
 TEST(GridConformingRules, CoarserLatticesReachOverTheEdgeAndHoldTheSameCurves) {
   Lattice lattice{.nx = 13, .ny = 9, .cell_px = 4.0, .origin_px = {-3.0, 2.0}, .side_px = 52.0};
   CurvePair curve = carried(pinned(round({24.0, 20.0}, 11.0)), {3.0, -2.0});

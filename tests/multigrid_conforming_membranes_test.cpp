@@ -48,8 +48,7 @@ struct Sample {
                   {.pressure = false, .model = model}, meter),
         level(hierarchy[0]),
         membrane(oracle::conforming_membrane(conforming_scene::curves(weights), lattice,
-                                             std::vector<double>(kNx * kNy, kappa),
-                                             {.least_area = 0.0})),
+                                             std::vector<double>(kNx * kNy, kappa))),
         law{std::string(name(model)), kappa, 0.2} {
     hierarchy.conform(conforming_scene::curves(weights), lattice, meter);
     std::mt19937 bits(7);

@@ -132,7 +132,7 @@ TEST(AutomaticCurves, AreConformingForSoftCurvesOfEveryWeight) {
 // Curves that change places: their tips go on settling after as many steps as there are.
 TEST(AutomaticCurves, AreAveragedWhereConformingCellsDoNotConverge) {
   const multigrid::WarpProblem problem =
-      scenes::problem(scenes::fold(scenes::kStudyOffset), 40, 100.0);
+      scenes::problem(scenes::fold(scenes::kStudyOffset), 56, 100.0);
   ASSERT_EQ(multigrid::solve(problem, {.curve_method = CurveMethod::conforming}).report.status,
             Status::limit);
   const Solution automatic = multigrid::solve(problem);

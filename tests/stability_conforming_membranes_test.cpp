@@ -92,7 +92,7 @@ TEST_P(DirectConformingMembrane, HasTheLatticeOfADirectNewtonsMethod) {
   const multigrid::WarpProblem problem = scenes::problem_of(c, n);
   const oracle::ConformingMembrane m =
       oracle::conforming_membrane(problem.curves, problem.lattice,
-                                  scenes::kappa_cells(c.scene, n, c.kappa), {.least_area = 0.0});
+                                  scenes::kappa_cells(c.scene, n, c.kappa));
   const multigrid::Solution solution = solved(c, n, 1e-8);
   EXPECT_EQ(solution.report.status, multigrid::Status::converged)
       << multigrid::name(solution.report.status);

@@ -40,7 +40,7 @@ TEST_P(Degenerate, EndsFiniteWithATrueStatus) {
   EXPECT_TRUE(std::isfinite(solution.report.energy.total));
   const bool one_node = method == CurveMethod::conforming && c.name == "DiscInsideACell";
   for (const multigrid::CurveReport& curve : solution.report.curves)
-    EXPECT_LE(curve.gap_max_px, one_node ? 6.0 : c.most_gap_px) << curve.name;
+    EXPECT_LE(curve.gap_max_px, one_node ? 6.2 : c.most_gap_px) << curve.name;
   // Such a disc hangs on one lattice node; the report says how far it is off.
   EXPECT_TRUE(!one_node || !solution.report.notes.empty());
 }

@@ -2,6 +2,7 @@
 #include "oracle_conforming.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace drumhead::oracle {
@@ -18,16 +19,16 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 /// 2-D index arithmetic and the walk over special cells.
 class Builder {
  public:
-  Builder(ConformingMembrane& membrane, const std::vector<double>& kappa)
-      : m_(membrane), cells_(membrane.cells), kappa_(kappa) {}
+  Builder(ConformingMembrane& membrane, const std::vector<double>& kappa, double gamma)
+      : m_(membrane), cells_(membrane.cells), kappa_(kappa), gamma_(gamma) {}
 
   void run() {
     set_nodes();
     set_regular_cells();
     set_special_cells();
+    join_parts();
     m_.stiffness.resize(m_.rest.rows(), m_.rest.rows());
     m_.stiffness.setFromTriplets(entries_.begin(), entries_.end());
-    std::erase_if(m_.rows, [](const ConformingRow& row) { return row.outline.empty(); });
   }
 
  private:
@@ -73,22 +74,20 @@ class Builder {
           entries_.insert(entries_.end(), {{a, a, .5}, {b, b, .5}, {a, b, -.5}, {b, a, -.5}});
         }
         const double kappa = kappa_[std::size_t(j * cells_.nx + i)];
-        if (kappa > 0.0) m_.rows.push_back({{loop}, 1.0, kappa});
+        if (kappa > 0.0) m_.rows.push_back({loop, 1.0, kappa});
       }
   }
 
   void set_special_cells() {
-    const std::size_t first = m_.rows.size();
-    m_.rows.resize(first + std::size_t(cells_.pressures));
     for (int j = 0; j < cells_.ny; ++j)
       for (int c = cells_.cell_begin[std::size_t(j)]; c < cells_.cell_begin[std::size_t(j) + 1];
            ++c)
         for (int p = cells_.part_begin[std::size_t(c)]; p < cells_.part_begin[std::size_t(c) + 1];
              ++p)
-          add_part(c, j, p, m_.rows[first + std::size_t(cells_.part_pressure[std::size_t(p)])]);
+          add_part(c, j, p);
   }
 
-  void add_part(int c, int j, int p, ConformingRow& row) {
+  void add_part(int c, int j, int p) {
     const int i = cells_.cell_column[std::size_t(c)];
     std::vector<int> outline;
     for (int n = cells_.part_node_begin[std::size_t(p)];
@@ -107,43 +106,66 @@ class Builder {
     }
     const double kappa = kappa_[std::size_t(j * cells_.nx + i)];
     if (!(kappa > 0.0)) return;
-    const double area = cells_.part_area[std::size_t(p)];
-    // Compliances of parts that share a pressure add up.
-    const double before = row.kappa > 0.0 ? row.area / row.kappa : 0.0;
-    row.area += area;
-    const double compliance = before + area / kappa;
-    row.kappa = compliance > 0.0 ? row.area / compliance : kappa;
-    row.outline.push_back(std::move(outline));
+    for (std::size_t n = 0; n < outline.size(); ++n) {
+      const int a = outline[n], b = outline[(n + 1) % outline.size()];
+      if (!held(a) || !held(b))
+        pieces_.push_back({std::min(a, b), std::max(a, b), int(m_.rows.size()), c});
+    }
+    m_.rows.push_back({std::move(outline), cells_.part_area[std::size_t(p)], kappa});
+  }
+
+  bool held(int n) const {
+    const int lattice = node(0, cells_.ny + 1);
+    return n >= lattice || cells_.find_node(n % (cells_.nx + 1), n / (cells_.nx + 1)) >= 0;
+  }
+
+  void join_parts() {
+    Entries entries;
+    std::ranges::sort(pieces_);
+    for (std::size_t n = 0; n + 1 < pieces_.size(); ++n) {
+      const auto& [from, to, a, cell] = pieces_[n];
+      const auto& [other_from, other_to, b, other] = pieces_[n + 1];
+      if (from != other_from || to != other_to || cell == other) continue;
+      const double ka = m_.rows[std::size_t(a)].kappa, kb = m_.rows[std::size_t(b)].kappa;
+      const double strength = 0.5 * gamma_ * (ka == kb ? 1.0 : std::min(ka, kb) / std::max(ka, kb));
+      entries.insert(entries.end(),
+                     {{a, a, strength}, {b, b, strength}, {a, b, -strength}, {b, a, -strength}});
+    }
+    m_.jump.resize(Eigen::Index(m_.rows.size()), Eigen::Index(m_.rows.size()));
+    m_.jump.setFromTriplets(entries.begin(), entries.end());
   }
 
   ConformingMembrane& m_;
   const grid::ConformingCells& cells_;
   const std::vector<double>& kappa_;
+  double gamma_;
   Entries entries_;
+  std::vector<std::array<int, 4>> pieces_;  ///< of outlines: two nodes, the row, its cell
 };
 
 }  // namespace
 
 double deformed_area(const ConformingRow& row, const Positions& x) {
   double twice = 0.0;
-  for (const std::vector<int>& loop : row.outline)
-    for (std::size_t n = 0; n < loop.size(); ++n)
-      twice += cross(x.row(loop[n]).transpose(), x.row(loop[(n + 1) % loop.size()]).transpose());
+  const std::vector<int>& loop = row.outline;
+  for (std::size_t n = 0; n < loop.size(); ++n)
+    twice += cross(x.row(loop[n]).transpose(), x.row(loop[(n + 1) % loop.size()]).transpose());
   return 0.5 * twice;
 }
 
 Sparse area_derivatives(const ConformingMembrane& m, const Positions& x) {
   Entries entries;
-  for (std::size_t r = 0; r < m.rows.size(); ++r)
-    for (const std::vector<int>& loop : m.rows[r].outline)
-      for (std::size_t n = 0; n < loop.size(); ++n) {
-        const int u = m.unknown[std::size_t(loop[n])];
-        if (u < 0) continue;
-        const int before = loop[(n + loop.size() - 1) % loop.size()],
-                  after = loop[(n + 1) % loop.size()];
-        entries.push_back({int(r), u, 0.5 * (x(after, 1) - x(before, 1))});
-        entries.push_back({int(r), m.unknowns + u, 0.5 * (x(before, 0) - x(after, 0))});
-      }
+  for (std::size_t r = 0; r < m.rows.size(); ++r) {
+    const std::vector<int>& loop = m.rows[r].outline;
+    for (std::size_t n = 0; n < loop.size(); ++n) {
+      const int u = m.unknown[std::size_t(loop[n])];
+      if (u < 0) continue;
+      const int before = loop[(n + loop.size() - 1) % loop.size()],
+                after = loop[(n + 1) % loop.size()];
+      entries.push_back({int(r), u, 0.5 * (x(after, 1) - x(before, 1))});
+      entries.push_back({int(r), m.unknowns + u, 0.5 * (x(before, 0) - x(after, 0))});
+    }
+  }
   Sparse B(Eigen::Index(m.rows.size()), 2 * m.unknowns);
   B.setFromTriplets(entries.begin(), entries.end());
   return B;
@@ -164,18 +186,19 @@ Sparse hessian(const ConformingMembrane& m, const VectorXd& pressure) {
     entries.push_back({u, u, m.spring[Eigen::Index(n)]});
     entries.push_back({m.unknowns + u, m.unknowns + u, m.spring[Eigen::Index(n)]});
   }
-  for (std::size_t r = 0; r < m.rows.size(); ++r)
-    for (const std::vector<int>& loop : m.rows[r].outline)
-      for (std::size_t n = 0; n < loop.size(); ++n) {
-        const int a = m.unknown[std::size_t(loop[n])],
-                  b = m.unknown[std::size_t(loop[(n + 1) % loop.size()])];
-        if (a < 0 || b < 0) continue;
-        const double half = 0.5 * pressure[Eigen::Index(r)];  // of x_a y_b − x_b y_a
-        entries.insert(entries.end(), {{a, m.unknowns + b, half},
-                                       {m.unknowns + b, a, half},
-                                       {b, m.unknowns + a, -half},
-                                       {m.unknowns + a, b, -half}});
-      }
+  for (std::size_t r = 0; r < m.rows.size(); ++r) {
+    const std::vector<int>& loop = m.rows[r].outline;
+    for (std::size_t n = 0; n < loop.size(); ++n) {
+      const int a = m.unknown[std::size_t(loop[n])],
+                b = m.unknown[std::size_t(loop[(n + 1) % loop.size()])];
+      if (a < 0 || b < 0) continue;
+      const double half = 0.5 * pressure[Eigen::Index(r)];  // of x_a y_b − x_b y_a
+      entries.insert(entries.end(), {{a, m.unknowns + b, half},
+                                     {m.unknowns + b, a, half},
+                                     {b, m.unknowns + a, -half},
+                                     {m.unknowns + a, b, -half}});
+    }
+  }
   Sparse H(2 * m.unknowns, 2 * m.unknowns);
   H.setFromTriplets(entries.begin(), entries.end());
   return H;
@@ -183,11 +206,10 @@ Sparse hessian(const ConformingMembrane& m, const VectorXd& pressure) {
 
 ConformingMembrane conforming_membrane(const std::vector<grid::CurvePair>& curves,
                                        const grid::Lattice& lattice,
-                                       const std::vector<double>& kappa,
-                                       const grid::ConformOptions& options) {
+                                       const std::vector<double>& kappa, double gamma) {
   ConformingMembrane membrane;
-  membrane.cells = grid::conform(curves, lattice, options);
-  Builder(membrane, kappa).run();
+  membrane.cells = grid::conform(curves, lattice);
+  Builder(membrane, kappa, gamma).run();
   return membrane;
 }
 
@@ -203,9 +225,15 @@ ConformingEnergy energy(const ConformingMembrane& m, const ConformingState& stat
   const double area = double(m.cells.nx) * m.cells.ny;
   sum.elastic = elastic_energy(m, state.x) / area;
   sum.constraint = spring_energy(m, state.x) / area;
-  for (const ConformingRow& row : m.rows) {
-    const double excess = deformed_area(row, state.x) / row.area - 1.0;
-    if (std::isfinite(row.kappa)) sum.volume += 0.5 * row.kappa * row.area * excess * excess / area;
+  sum.volume = -0.5 * state.P.dot(m.jump * state.P) / area;
+  for (std::size_t r = 0; r < m.rows.size(); ++r) {
+    const ConformingRow& row = m.rows[r];
+    const double excess = deformed_area(row, state.x) / row.area - 1.0,
+                 p = state.P[Eigen::Index(r)];
+    if (m.joined(r))
+      sum.volume += row.area * p * (excess - 0.5 * p / row.kappa) / area;
+    else if (std::isfinite(row.kappa))
+      sum.volume += 0.5 * row.kappa * row.area * excess * excess / area;
   }
   return sum;
 }
@@ -220,10 +248,11 @@ VectorXd gradient(const ConformingMembrane& m, const ConformingState& state) {
     out[u] = force(Eigen::Index(n), 0);
     out[m.unknowns + u] = force(Eigen::Index(n), 1);
   }
+  out.tail(out.size() - 2 * m.unknowns) -= m.jump * state.P;
   out.head(2 * m.unknowns) += area_derivatives(m, state.x).transpose() * state.P;
   for (std::size_t r = 0; r < m.rows.size(); ++r) {
     const ConformingRow& row = m.rows[r];
-    out[2 * m.unknowns + Eigen::Index(r)] =
+    out[2 * m.unknowns + Eigen::Index(r)] +=
         deformed_area(row, state.x) - row.area - row.area * state.P[Eigen::Index(r)] / row.kappa;
   }
   return out;

@@ -9,10 +9,13 @@
 //             + sum_triangles      mu/2 A_t |F_t|²
 //             + sum_held, soft     s/2 |x − target|²
 //             + sum_rows           P (a − A) − A P²/(2 kappa)
+//             − sum_joined parts   gamma/2 1/(mu_a + mu_b) (P_a − P_b)²
 //
-// A row is a regular cell, or the parts of special cells that share a pressure: the deformed area
-// of a cell is J* of its centre, that of a part the sum of A_t J_t, and both are their outline's
-// shoelace formula. Nodes: lattice nodes j·(nx+1) + i, then the curve nodes.
+// A row is a regular cell or a part of a special cell: the deformed area of a cell is J* of its
+// centre, that of a part the sum of A_t J_t, and both are their outline's shoelace formula. Parts
+// of two special cells are joined that have a piece of their outlines in common, not between two
+// held nodes; where their kappa differ, by so much less as one is of the other. Nodes: lattice
+// nodes j·(nx+1) + i, then the curve nodes.
 #include <limits>
 #include <vector>
 
@@ -27,7 +30,7 @@ namespace drumhead::oracle {
 using Positions = Eigen::MatrixX2d;
 
 struct ConformingRow {
-  std::vector<std::vector<int>> outline;  ///< polygons, counter-clockwise
+  std::vector<int> outline;  ///< polygon, counter-clockwise
   double area = 0.0;
   double kappa = 0.0;  ///< > 0, infinity allowed
 };
@@ -39,15 +42,19 @@ struct ConformingMembrane {
   Eigen::VectorXd spring;                 ///< s, 0 where no soft curve holds the node
   Eigen::SparseMatrix<double> stiffness;  ///< of the triangles and regular cells, all nodes
   std::vector<ConformingRow> rows;
+  Eigen::SparseMatrix<double> jump;  ///< J of −½ Pᵀ J P, what joined parts add to L
+  bool joined(std::size_t row) const {
+    return jump.coeff(Eigen::Index(row), Eigen::Index(row)) > 0.0;
+  }
   std::vector<int> unknown;  ///< number of a node among the unknown ones, −1: known
   int unknowns = 0;          ///< nodes
 };
 
-/// mu = 1; kappa per lattice cell, i fastest (special cells hand theirs to their parts).
+/// mu = 1; kappa per lattice cell, i fastest (special cells hand theirs to their parts). `gamma`:
+/// of the joined parts, as the solver has it.
 ConformingMembrane conforming_membrane(const std::vector<grid::CurvePair>& curves,
                                        const grid::Lattice& lattice,
-                                       const std::vector<double>& kappa,
-                                       const grid::ConformOptions& options = {});
+                                       const std::vector<double>& kappa, double gamma = 0.5);
 
 struct ConformingState {
   Positions x;

@@ -26,14 +26,15 @@ class Saddle {
  public:
   Saddle(const ConformingMembrane& m, const Sparse& H, const Sparse& B) : H_(H), B_(B) {
     const Eigen::Index rows = Eigen::Index(m.rows.size());
-    compliance_.resize(rows);
-    condensed_.resize(rows);
+    VectorXd softened(rows), compliance(rows);
     for (Eigen::Index r = 0; r < rows; ++r) {
       const ConformingRow& row = m.rows[std::size_t(r)];
-      compliance_[r] = row.area / row.kappa;
-      condensed_[r] = std::min(row.kappa, kMostCondensed) / row.area;
+      compliance[r] = row.area / row.kappa;
+      softened[r] = row.area / std::min(row.kappa, kMostCondensed);
     }
-    const Sparse matrix = H + Sparse(B.transpose() * condensed_.asDiagonal() * B);
+    compliance_ = m.jump + Sparse(compliance.asDiagonal());
+    condensed_.compute(m.jump + Sparse(softened.asDiagonal()));
+    const Sparse matrix = H + Sparse(B.transpose() * Sparse(condensed_.solve(B)));
     factor_.compute(matrix);
     if (factor_.info() != Eigen::Success) throw std::runtime_error("oracle: singular matrix");
   }
@@ -45,20 +46,20 @@ class Saddle {
     double last = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < 200; ++pass) {
       const VectorXd rf = f - H_ * dx - B_.transpose() * dP;
-      const VectorXd rg = g - B_ * dx + compliance_.cwiseProduct(dP);
+      const VectorXd rg = g - B_ * dx + compliance_ * dP;
       const double left = rf.norm() + rg.norm();
       if (left < 1e-12 * scale || (pass > 5 && left > 0.999 * last)) break;
       last = left;
-      const VectorXd step = factor_.solve(rf + B_.transpose() * condensed_.cwiseProduct(rg));
-      dP += condensed_.cwiseProduct(B_ * step - rg);
+      const VectorXd step = factor_.solve(rf + B_.transpose() * condensed_.solve(rg));
+      dP += condensed_.solve(B_ * step - rg);
       dx += step;
     }
   }
 
  private:
   const Sparse &H_, &B_;
-  VectorXd compliance_, condensed_;
-  Eigen::SimplicialLDLT<Sparse> factor_;
+  Sparse compliance_;
+  Eigen::SimplicialLDLT<Sparse> condensed_, factor_;
 };
 
 ConformingState moved(const ConformingMembrane& m, const ConformingState& state, const VectorXd& dx,
@@ -74,15 +75,18 @@ ConformingState moved(const ConformingMembrane& m, const ConformingState& state,
 
 double merit(const ConformingMembrane& m, const Positions& x, const VectorXd& P) {
   double sum = elastic_energy(m, x) + spring_energy(m, x);
+  const VectorXd jumps = m.jump * P;
   for (std::size_t r = 0; r < m.rows.size(); ++r) {
     const ConformingRow& row = m.rows[r];
     const double excess = deformed_area(row, x) / row.area - 1.0;
-    if (row.kappa <= kMeritKappa) {
+    const bool joined = m.joined(r);
+    if (row.kappa <= kMeritKappa && !joined) {
       sum += row.area * 0.5 * row.kappa * excess * excess;
       continue;
     }
-    const double p = P[Eigen::Index(r)], c = excess - p / row.kappa;
-    sum += row.area * (p * c + 0.5 * kMeritKappa * c * c);
+    const double p = P[Eigen::Index(r)];
+    const double c = excess - p / row.kappa - jumps[Eigen::Index(r)] / row.area;
+    sum += row.area * (p * c + 0.5 * std::min(row.kappa, kMeritKappa) * c * c);
   }
   return sum;
 }
@@ -112,15 +116,14 @@ void count_folds(const ConformingMembrane& m, ConformingResult& result) {
                                         : (j + (code >> 1)) * (cells.nx + 1) +
                                               cells.cell_column[std::size_t(c)] + (code & 1));
           }
-          result.folded_triangles += deformed_area({{outline}, 0.0, 0.0}, x) < 0.0;
+          result.folded_triangles += deformed_area({outline, 0.0, 0.0}, x) < 0.0;
         }
   for (const ConformingRow& row : m.rows) {
-    if (row.outline.size() != 1 || row.outline[0].size() != 4 || row.area != 1.0) continue;
+    if (row.outline.size() != 4 || row.area != 1.0) continue;
     bool folded = false;
     for (std::size_t n = 0; n < 4; ++n) {
-      const Vector2d at = x.row(row.outline[0][n]);
-      const Vector2d to = x.row(row.outline[0][(n + 1) % 4]),
-                     from = x.row(row.outline[0][(n + 3) % 4]);
+      const Vector2d at = x.row(row.outline[n]);
+      const Vector2d to = x.row(row.outline[(n + 1) % 4]), from = x.row(row.outline[(n + 3) % 4]);
       folded |= cross(to - at, from - at) < 0.0;
     }
     result.folded_cells += folded;

@@ -56,12 +56,6 @@ struct ConformOptions {
   /// .1 errors stay as they are; above .25 they only grow (.4, one pressure a part, S2 50²
   /// 10: 1.16; .92 at .25).
   double snap = 0.1;
-  /// Parts of less area (in cells²) share the pressure of their largest neighbour on the same side
-  /// until they have as much together, 0…1; 0: one pressure a part, which is stable at every kappa
-  /// but stiff in small parts. Errors as above at .1, .3, .5, snap .25: S2 50², kappa/mu 10: .91
-  /// .83 .76, 100: 1.93 1.50 1.06, infinity: 3.38 1.86 1.12; 100², infinity: .89 .67 .40; S4 100²,
-  /// 10: .136 .126 .147, infinity: 1.35 1.16 –.
-  double least_area = 0.3;
 };
 
 /// Where a curve node lies.
@@ -124,9 +118,6 @@ struct ConformingCells {
   std::vector<PartTriangle> triangle;
   std::vector<double> part_area;   ///< in cells²
   std::vector<Point> part_centre;  ///< its centroid
-  /// The pressure unknown of the part, 0 … pressures−1, its own but for small parts (least_area).
-  std::vector<int> part_pressure;
-  int pressures = 0;
 
   std::vector<HeldConflict> conflicts;  ///< farther apart than 1e-6 cells
   std::vector<Point> simplified_cells;  ///< centres, in cells (rule 7)

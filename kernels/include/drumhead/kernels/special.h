@@ -5,7 +5,12 @@
 // vertices cut into triangles, and instead of Eq. 6 and 5 of Setaluri et al. 2014 it has
 //   Σ_triangles mu A/2 |F|² + Σ_parts [P (A J − A) − A P²/(2 kappa)]
 // with F constant on a triangle and A J the area of the deformed polygon: one pressure per side of
-// the curve (one per cell is first order again, one per triangle locks). Nodes that a curve holds
+// the curve (one per cell is first order again, one per triangle locks). A part may have but one
+// unknown corner, which its pressure would hold alone; so neighbours on the same side of the curve
+// share what they resist, by a penalty on the jump of the pressure between them as in stabilised
+// mixed elements (Kechkar and Silvester 1992),
+//   −Σ_neighbours gamma/2 h²/(mu_a + mu_b) (P_a − P_b)²
+// where both are parts of special cells; less where kappa jumps, too. Nodes that a curve holds
 // have the energy stiffness/2 |u − wanted|² besides; those of a hard curve are *known*: their
 // stiffness is infinite, their correction 0. Curve nodes of soft curves are unknowns beside the
 // lattice (soft_nodes.h). Storage is proportional to the length of the curves.
@@ -211,7 +216,8 @@ class SpecialRows {
   /// Whether cell row j has neither special cells nor cells that their relaxation concerns.
   bool regular_row(int j) const {
     const auto none = [](const Columns& some) { return some.first == some.last; };
-    const bool borders_none = !has_jumps_ || (borders(j, 0).empty() && borders(j, 1).empty());
+    const bool borders_none =
+        !has_border_jumps_ || (borders(j, 0).empty() && borders(j, 1).empty());
     return visits(j, 0).empty() && visits(j, 1).empty() && none(loose(j)) && none(loose(j + 1)) &&
            borders_none;
   }
@@ -224,6 +230,10 @@ class SpecialRows {
   bool has_jumps() const { return has_jumps_; }
   /// Strength of the jump at entry k of SpecialCells::neighbour.
   T jump(int k) const { return jump_[std::size_t(k)]; }
+  /// Of that, what the equations have themselves (Membrane::part_jump).
+  T own_jump(int k) const { return own_jump_.empty() ? T(0) : own_jump_[std::size_t(k)]; }
+  /// Whether regular cells are joined with parts by jumps.
+  bool has_border_jumps() const { return has_border_jumps_; }
   /// Of a part, where there are jumps.
   const PartJumps<T>& jumps(int p) const { return part_jumps_[std::size_t(p)]; }
   /// Whether there is anything that NearRow::part leaves out; where all curves are hard there is
@@ -261,6 +271,7 @@ class SpecialRows {
   void add_stiffness(const Membrane<T>& membrane);
   void linearise_regular(const Membrane<T>& membrane);
   void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
+  void set_own_jumps(const Membrane<T>& membrane);
   void set_jumps(const Membrane<T>& membrane);
   void set_jump(const Membrane<T>& membrane, std::size_t part, int neighbour, int i, int j);
   void set_steps(const Membrane<T>& membrane);
@@ -273,14 +284,14 @@ class SpecialRows {
   std::vector<DiagonalRow<T>> diagonal_;
   std::vector<CellVisit<T>> visit_;
   std::vector<PartRow<T>> part_;
-  std::vector<T> jump_;
+  std::vector<T> jump_, own_jump_;
   std::vector<PartJumps<T>> part_jumps_;
   std::vector<BorderJump<T>> border_;
   std::vector<PartCoupling<T>> further_;
   std::vector<BlockRow<T>> block_;
   std::vector<FringeCell> fringe_;
   std::vector<T> tangent_;
-  bool has_jumps_ = false;
+  bool has_jumps_ = false, has_border_jumps_ = false;
   SoftRows<T> soft_;
 };
 

@@ -124,6 +124,9 @@ struct Membrane {
   /// equations are solved; on coarser levels it stands for the nodes in the middle of the edges
   /// that they lack, without which volume and curve rows contradict one another there.
   T pressure_jump = T(0);
+  /// gamma: the volume rows of parts (special.h), in the equations and on every level, have the
+  /// term −gamma Σ_neighbours h²/(mu_a + mu_b) (P − P_neighbour).
+  T part_jump = T(0);
   /// Cells that conform to curves (see special.h), null: all cells are regular. Their rows,
   /// linearised at this state (force and energy do without that), and the pressures of their parts.
   const SpecialRows<T>* special = nullptr;
