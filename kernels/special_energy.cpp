@@ -8,24 +8,6 @@
 namespace drumhead::kernels {
 namespace {
 
-/// Displacement gradient of a triangle: F − 1.
-template <class T>
-struct Gradient {
-  T xx = T(0), xy = T(0), yx = T(0), yy = T(0);
-};
-template <class T, class F>
-Gradient<T> gradient(const Triangle<T>& triangle, F&& displacement) {
-  Gradient<T> g;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Vector2<T> u = displacement(triangle.vertex[a]);
-    g.xx += u.x * triangle.gx[a];
-    g.xy += u.x * triangle.gy[a];
-    g.yx += u.y * triangle.gx[a];
-    g.yy += u.y * triangle.gy[a];
-  }
-  return g;
-}
-
 /// A (J − 1) of a part: twice it is Σ X_k × w_k+1 + w_k × X_k+1 + w_k × w_k+1 along its boundary.
 template <class T, class F>
 T volume_change(const SpecialCells<T>& cells, int part, F&& displacement) {
@@ -85,8 +67,8 @@ void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i
   for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
        ++t) {
     const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
-    const Gradient<T> g =
-        gradient(triangle, [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); });
+    const Gradient<T> g = gradient<T>(
+        triangle, 3, [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); });
     const T scale = mu * triangle.area;
     for (std::size_t a = 0; a < 3; ++a) {
       const T gx = triangle.gx[a], gy = triangle.gy[a];
@@ -259,7 +241,7 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
     for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
          ++t) {
       const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
-      const Gradient<T> g = gradient(triangle, displacement);
+      const Gradient<T> g = gradient<T>(triangle, 3, displacement);
       const T xx = T(1) + g.xx, yy = T(1) + g.yy;
       sums.elastic += 0.5 * double(mu_at(m, i, j)) * double(triangle.area) *
                       double((xx * xx + yy * yy) + (g.xy * g.xy + g.yx * g.yx));

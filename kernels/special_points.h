@@ -162,18 +162,11 @@ class CellLaw {
     if (share == Share::shape) at.kappa = T(0);
     if (share == Share::corner) at.kappa = corner_;
     if (share == Share::volume) at.mu = T(0);
-    T xx = T(0), yx = T(0), xy = T(0), yy = T(0);
-    for (std::size_t a = 0; a < std::size_t(point.count); ++a) {
-      const Vector2<T> u = displacement(point.vertex[a]);
-      xx += u.x * point.gx[a];
-      xy += u.x * point.gy[a];
-      yx += u.y * point.gx[a];
-      yy += u.y * point.gy[a];
-    }
-    at.f11 += xx;
-    at.f21 = yx;
-    at.f12 = xy;
-    at.f22 += yy;
+    const Gradient<T> g = gradient<T>(point, point.count, displacement);
+    at.f11 += g.xx;
+    at.f21 = g.yx;
+    at.f12 = g.xy;
+    at.f22 += g.yy;
     return at;
   }
   PointState<T> state(const Point<T>& point, Share share, T shift) const {

@@ -24,6 +24,26 @@ Vector2<T> at_vertex(const SpecialCells<T>& cells, const Plane<const T>& x, cons
   return {x.at(i + (vertex & 1), j + (vertex >> 1)), y.at(i + (vertex & 1), j + (vertex >> 1))};
 }
 
+/// Displacement gradient F − 1.
+template <class T>
+struct Gradient {
+  T xx = T(0), xy = T(0), yx = T(0), yy = T(0);
+};
+/// Of a triangle or point with `count` vertices and the gradients of their shape functions;
+/// `displacement`: of a vertex.
+template <class T, class S, class F>
+Gradient<T> gradient(const S& shape, int count, F&& displacement) {
+  Gradient<T> g;
+  for (std::size_t a = 0; a < std::size_t(count); ++a) {
+    const Vector2<T> u = displacement(shape.vertex[a]);
+    g.xx += u.x * shape.gx[a];
+    g.xy += u.x * shape.gy[a];
+    g.yx += u.y * shape.gx[a];
+    g.yy += u.y * shape.gy[a];
+  }
+  return g;
+}
+
 /// Place of column i in a row of a plane: data[j·stride + row_place(plane, i)].
 template <class T>
 int row_place(const Plane<T>& plane, int i) {

@@ -2,7 +2,8 @@
 #include "exact_rows.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "words.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -53,12 +54,6 @@ void append(const NewtonReport& more, NewtonReport& done) {
   done.change_rms += more.change_rms;
   done.change_max += more.change_max;
   done.volume_gap = more.volume_gap;
-}
-
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
 }
 
 /// What is left where a run did not end as it should; `rows`: averaged ones.

@@ -4,6 +4,8 @@
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>
 
+#include "words.h"
+
 namespace drumhead::multigrid {
 namespace {
 
@@ -64,7 +66,7 @@ template double total_stiffness(const Level<double>&);
 void note_areas(SolveReport& report) {
   if (!report.exact && report.status == Status::converged && report.volume_gap > kMostVolumeGap)
     report.notes.push_back("curves and areas contradict one another on this lattice: share " +
-                           std::to_string(report.volume_gap) + " of the energy");
+                           figure(report.volume_gap) + " of the energy");
 }
 
 }  // namespace drumhead::multigrid

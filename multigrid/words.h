@@ -15,6 +15,13 @@ inline std::string in_words(double px) {
   return text;
 }
 
+/// "1.2e-07": two digits of a number that may be tiny.
+inline std::string figure(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
+
 /// "12 %" of a share .12
 inline std::string percent(double share) {
   char text[64];
