@@ -10,6 +10,7 @@
 #include "exact_rows.h"
 #include "level_change.h"
 #include "volume_gap.h"
+#include "words.h"
 
 namespace drumhead::multigrid {
 namespace {
@@ -61,8 +62,11 @@ constexpr double kAveragedRate = 0.35;
 // one cycle a step does, and coarser levels, which only start the next one, stop at more than the
 // finest. Milliseconds of S2 kappa 10 at 100², 200², 400², with kContent and kShare everywhere: 35,
 // 78, 194, and .04, .06, .06 of the discretisation error left; with these 21, 45, 114 and .12, .15,
-// .15. More than 0.8 is nothing solved (newton_judge.h).
-constexpr double kGentleContent = 0.8, kCoarseShare = 0.3, kGentleStart = 0.02;
+// .15. Where cycles come to contract by less, as on fine lattices of stiff scenes, GCR to
+// kLooseReduction: kappa 1e4, 800² S2 1143 ms with .8 and .3, 833 so, S4 500 and 400; with .95 for
+// both 612 and 336, but S4 is thought to lack .29 of the discretisation error then.
+constexpr double kGentleContent = 0.9, kLooseReduction = 0.6, kCoarseShare = 0.3,
+                 kGentleStart = 0.02;
 // Stiffer ones: likewise after a level of full steps alone, where there is no mask of kappa; S2 and
 // S4 at kappa 100 otherwise take 35 and 26 ms instead of 26 and 20 at 100², 219 and 160 instead of
 // 140 and 90 at 400². Else, and on the start level, kStartContent, and where cycles do not reach
@@ -138,7 +142,7 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, b
   }
   if (!start && loose(hierarchy, options, shortened)) {
     linear.content = kGentleContent;
-    linear.reduction = kReduction;
+    linear.reduction = kLooseReduction;
   }
   const double most_for_v = start ? kVCyclesFirst : kVCycles;
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
@@ -284,8 +288,7 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
 }
 
 void note_rounding(SolveReport& report) {
-  report.notes.push_back("single precision: nodes settle to " +
-                         std::to_string(report.algebraic_rms_px) +
+  report.notes.push_back("single precision: nodes settle to " + figure(report.algebraic_rms_px) +
                          " px RMS, more than a tenth of the discretisation error; a tolerance "
                          "below that is solved in double precision");
 }

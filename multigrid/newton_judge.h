@@ -20,7 +20,7 @@ struct FullMove {
 class Judge {
  public:
   /// A linear solution this bad is not worth a step with an unclamped Hessian.
-  static constexpr double kStagnated = 0.8;
+  static constexpr double kStagnated = 0.9;
 
   Judge(const NewtonOptions& options, NewtonReport& report) : options_(options), report_(report) {}
 
