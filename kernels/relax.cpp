@@ -59,7 +59,7 @@ void clear_row(const Plane<T>& plane, int j) {
 }
 
 /// The sweeps of one relaxation in order.
-enum class Sweep { clear, prolong, start, nodes, near, volume, parts, cuts, nothing, restriction };
+enum class Sweep { clear, prolong, start, nodes, near, volume, cuts, nothing, restriction };
 struct Stage {
   Sweep sweep;
   int colour = 0;  ///< of nodes, or parity of the rows
@@ -75,15 +75,15 @@ struct StageList {
 };
 
 /// Volume rows, curve rows, and both in reverse.
-void add_rows(const RelaxStages& stages, bool band, bool volume, bool cuts, StageList& list) {
+void add_rows(VolumeSweeps sweeps, bool band, bool volume, bool cuts, StageList& list) {
   for (bool reverse : {false, true}) {
     const std::array<int, 2> rows = reverse ? std::array{1, 0} : std::array{0, 1};
     auto add = [&](Sweep sweep) {
       for (int parity : rows) list.add({sweep, parity, reverse, band});
     };
-    if (volume && !reverse && stages.volume != VolumeSweeps::reverse) add(Sweep::volume);
+    if (volume && !reverse && sweeps != VolumeSweeps::reverse) add(Sweep::volume);
     if (cuts) add(Sweep::cuts);
-    if (volume && reverse && stages.volume != VolumeSweeps::forwards) add(Sweep::volume);
+    if (volume && reverse && sweeps != VolumeSweeps::forwards) add(Sweep::volume);
   }
 }
 
@@ -103,18 +103,12 @@ StageList list_stages(const RelaxStages& stages, bool prolong, bool near, bool v
   // not see each other.
   if (near && stages.sweeps != Sweeps::none)
     for (int parity : {0, 1}) list.add({Sweep::near, parity});
-  const bool all = stages.sweeps == Sweeps::all;
-  if (all) add_rows(stages, false, volume, cuts, list);
-  if (near && volume && all && stages.curves_again) {
-    // Once more along the curves: V-cycles that take a residual down by 1000 at 128², kappa 1e4: S1
-    // 16 (20 without), S2 25 (29), S4 16 (21); more sweeps gain nothing more.
-    for (int parity : {0, 1}) list.add({Sweep::near, parity});
-    for (int parity : {0, 1}) list.add({Sweep::parts, parity, false});
-    for (int parity : {1, 0}) list.add({Sweep::parts, parity, true});
-  }
-  for (int n = 0; n < stages.band && cuts; ++n) {
+  if (stages.sweeps == Sweeps::all) add_rows(stages.volume, false, volume, cuts, list);
+  for (int n = 0; n < stages.band && (cuts || near); ++n) {
     for (int colour : {0, 1}) list.add({Sweep::nodes, colour, false, true});
-    add_rows(stages, true, volume, true, list);
+    if (near)
+      for (int parity : {0, 1}) list.add({Sweep::near, parity});
+    add_rows(near ? VolumeSweeps::reverse : stages.volume, true, volume, cuts, list);
   }
   if (restriction) {
     // It looks three rows back: an empty stage keeps it clear of the sweep before.
@@ -157,36 +151,35 @@ class Relaxation {
     relax_near_row(*special_, f_, d_, j);
     relax_curve_row(*special_, f_, d_, j);
   }
-  void band_nodes(int colour, int j) const {
-    const Spans spans = band(j);
-    if (spans.first != spans.last) kernels_.relax_nodes(level_.membrane, f_, d_, colour, spans, j);
-  }
-  void band_volume(bool reverse, int j) const {
-    const Spans spans = band(j);
+  void band_nodes(int colour, T* kept, int j) const {
+    const Spans spans = level_.band->row(j);
     if (spans.first == spans.last) return;
-    for (const int parity : {int(reverse), int(!reverse)})
-      kernels_.relax_volume_spans(level_.membrane, f_, d_, parity, spans, j);
+    keeping_near(colour, kept, j,
+                 [&] { kernels_.relax_nodes(level_.membrane, f_, d_, colour, spans, j); });
+  }
+  void band_volume(bool reverse, T* kept, int j) const {
+    const Spans spans = level_.band->row(j);
+    const auto sweep = [&] {
+      if (spans.first == spans.last) return;
+      for (const int parity : {int(reverse), int(!reverse)})
+        kernels_.relax_volume_spans(level_.membrane, f_, d_, parity, spans, j);
+    };
+    if (!special_ || special_->regular_row(j)) return sweep();
+    relax_volume_and_parts(*special_, level_.f, d_, reverse, j, kept, sweep);
   }
   void volume(bool reverse, typename RowScratch<T>::Rows& rows, int j) const {
     const auto sweep = [&](const SplitRow<const T>& share) {
       kernels_.relax_volume(level_.membrane, f_, d_, reverse, share, j);
     };
     if (!special_ || special_->regular_row(j)) return sweep({});
-    relax_volume_and_parts(*special_, level_.f, d_, reverse, j, rows.kept, rows.share, sweep);
-  }
-  void parts(bool reverse, int j) const {
-    for (const int column : {int(reverse), int(!reverse)})
-      relax_part_row(*special_, f_, d_, column, reverse, j);
+    relax_volume_and_parts(*special_, level_.f, d_, reverse, j, rows.kept,
+                           [&] { without_special_cells(*special_, j, rows.share, sweep); });
   }
   void cuts(bool reverse, int j) const {
     relax_cuts_row(level_.membrane, level_.cuts, level_.fq, level_.dq, d_, level_.f, reverse, j);
   }
 
  private:
-  Spans band(int j) const {
-    const Cuts<T>& cuts = level_.cuts;
-    return {cuts.band + cuts.band_begin[j], cuts.band + cuts.band_begin[j + 1]};
-  }
   template <class F>
   void keeping_near(int colour, T* kept, int j, F&& sweep) const {
     if (special_)
@@ -231,7 +224,7 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
       case Sweep::nodes:
         if (j == 0) break;
         if (stage.band)
-          relaxation.band_nodes(stage.colour, j);
+          relaxation.band_nodes(stage.colour, rows.kept, j);
         else
           relaxation.nodes(stage.colour, rows.kept, j);
         break;
@@ -241,12 +234,9 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
       case Sweep::volume:
         if ((j & 1) != stage.colour) break;
         if (stage.band)
-          relaxation.band_volume(stage.reverse, j);
+          relaxation.band_volume(stage.reverse, rows.kept, j);
         else
           relaxation.volume(stage.reverse, rows, j);
-        break;
-      case Sweep::parts:
-        if ((j & 1) == stage.colour) relaxation.parts(stage.reverse, j);
         break;
       case Sweep::cuts:
         if ((j & 1) == stage.colour) relaxation.cuts(stage.reverse, j);

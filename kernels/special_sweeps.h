@@ -155,21 +155,28 @@ void with_border_jumps(const SpecialRows<T>& rows, const Unknowns<T>& f, const U
   }
 }
 
-/// The volume rows of the cells of cell row j: a vectorised sweep(share) over the regular ones,
-/// then the parts of the special ones, of each those of even columns first unless `reverse`. The
-/// sweep takes dP of special cells as 0; meanwhile f carries the jump terms that this leaves out.
-/// `kept`: one value a border; `share`: 1 for every cell.
+/// Runs a vectorised sweep(share) over cell row j that leaves special cells as they are. `share`: 1
+/// for every cell.
 template <class T, class F>
-void relax_volume_and_parts(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
-                            bool reverse, int j, T* kept, const SplitRow<T>& share, F&& sweep) {
+void without_special_cells(const SpecialRows<T>& rows, int j, const SplitRow<T>& share, F&& sweep) {
   const auto set_share = [&](T value) {
     for (const int parity : {0, 1})
       for (const CellVisit<T>& visit : rows.visits(j, parity))
         share.half[parity][visit.column >> 1] = value;
   };
   set_share(T(0));
-  with_border_jumps(rows, f, d, j, kept, [&] { sweep({{share.half[0], share.half[1]}}); });
+  sweep({{share.half[0], share.half[1]}});
   set_share(T(1));
+}
+
+/// The volume rows of the cells of cell row j: a sweep over regular ones, then the parts of the
+/// special ones, of each those of even columns first unless `reverse`. The sweep takes dP of
+/// special cells as 0; meanwhile f carries the jump terms that this leaves out. `kept`: one value a
+/// border.
+template <class T, class F>
+void relax_volume_and_parts(const SpecialRows<T>& rows, const Unknowns<T>& f, const Unknowns<T>& d,
+                            bool reverse, int j, T* kept, F&& sweep) {
+  with_border_jumps(rows, f, d, j, kept, sweep);
   for (const int row : {j, j + 1})
     for (const int i : rows.loose(row)) d.x.at(i, row) = d.y.at(i, row) = T(0);
   for (const int parity : {int(reverse), int(!reverse)})

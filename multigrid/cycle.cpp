@@ -12,8 +12,10 @@ namespace {
 // sigma of the coarse levels' volume rows. Eliminating the nodes that a coarse level lacks gives 1
 // at most. Two cycles from the interpolated solution leave of the error in x̂ at 128², kappa 100:
 // S2 .050/.051/.055/.066 at .25/.5/1/2, S4 .083/.084/.093/.13; without it S2 diverges (48 times a
-// cycle, kappa 1e4: 4e6 times).
-constexpr double kPressureJump = 0.4;
+// cycle, kappa 1e4: 4e6 times). Conforming cells have the jump of own_jump beside it: at kappa 100,
+// 200² a first cycle leaves .116, .098, .089, .084 px of S2 with .4, .2, .1, .05, S4 .42, .41, .40,
+// .40.
+constexpr double kPressureJump = 0.4, kConformingJump = 0.1;
 // kappa/mu from which volume and curve rows contradict one another so much that the band beside the
 // curves is relaxed once more after the coarse correction. What the first F-cycles leave (S2, kappa
 // 1e4, 800²): .10, .31, .50 without; .07, .27, .59 with it; .06, .26, .61 with another one before
@@ -25,10 +27,15 @@ constexpr double kPressureJump = 0.4;
 // before: S1 kappa 1 .46, .33 without and .38, .26 with it, S2 kappa 10 .43, .35 and .41, .27; S2
 // kappa 1e4 on 400² takes 3 cycles instead of 10. Not where a mask of kappa is: S3 takes .91, 1.0
 // and .93 of the steps at 200², 400², 800² (means of six offsets), and as long.
+// Beside conforming curves always twice before the restriction. What a first cycle leaves at kappa
+// 100, 200², then without it, once, twice and eight times, px: S2 .084, .078, .071, .051 (twice on
+// all cells .064), S4 .40, .33, .28, .20 (.26). Newton steps on the finest level and time, 128² and
+// 200², means of six offsets, instead of relaxing the list of special cells twice everywhere: S2
+// kappa 10 3.0 (4.0), .75, kappa 100 4.0 (5.0), .92; S4 kappa 10 4.0 (5.0), .78, 100 5.2 (6.2), .7,
+// 1e4 5.3 (8.5), .77; S1 1e4 14.7 (16.5), 1.
 constexpr double kStiff = 30.0;
-// Below it the list of special cells is not relaxed twice a sweep either: S2 kappa 10 at 160² 26.7
-// ms with once, 30.3 with twice, S4 14.8 and 15.2. The power method sees the largest eigenvalue
-// from below, on the coarser levels.
+constexpr int kConformingBand = 2;
+// The power method sees the largest eigenvalue from below, on the coarser levels.
 constexpr int kPowerSteps = 8;
 constexpr double kPowerMargin = 1.3;
 // Up to this kappa/mu averaged rows do with one sweep of the top level's volume rows, after the
@@ -49,9 +56,10 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
   for (int l = top; l < hierarchy.size(); ++l) hierarchy[l].solid.averaged = l > top;
   clamp_width_ = std::min(hierarchy[top].clamp_width, most_clamp);
   hierarchy[top].pressure_jump = T(0);
+  const double jump = hierarchy.conforming() ? kConformingJump : kPressureJump;
   for (int l = top + 1; l < hierarchy.size(); ++l) {
     hierarchy[l].clamp_width = clamp_width_;
-    hierarchy[l].pressure_jump = T(kPressureJump / hierarchy.traits().stiffest);
+    hierarchy[l].pressure_jump = T(jump / hierarchy.traits().stiffest);
   }
   if (pressure && kernels::isotropic(hierarchy.traits().model)) {
     prepare_relaxation();
@@ -61,11 +69,10 @@ Cycle<T>::Cycle(Hierarchy<T>& hierarchy, int top, bool pressure, T most_clamp)
   bottom_.factorise(hierarchy[hierarchy.size() - 1], pressure, T(hierarchy.traits().jump_inside));
   residual_.resize(hierarchy[top].dq.size());
   const SceneTraits& traits = hierarchy.traits();
-  curves_again_ = traits.stiffness >= kStiff;
-  if (hierarchy[top].cuts.size() == 0 || kernels::isotropic(traits.model)) return;
+  if (kernels::isotropic(traits.model)) return;
   const bool stiff = pressure && traits.stiffness >= kStiff;
   band_up_ = stiff ? 1 : 0;
-  if (!(traits.jump > 0.0)) return;
+  if (hierarchy[top].cuts.size() == 0 || !(traits.jump > 0.0)) return;
   const bool few = hierarchy[top].nodes() < kManyNodes;
   if (traits.stiffness <= kGentlest && few) last_once_ = hierarchy.size();
 }
@@ -74,7 +81,12 @@ template <class T>
 void Cycle<T>::relax_band() {
   const SceneTraits& traits = hierarchy_.traits();
   const Level<T>& level = hierarchy_[top_];
-  if (level.cuts.size() == 0 || kernels::isotropic(traits.model) || level.compliance) return;
+  if (kernels::isotropic(traits.model)) return;
+  if (level.conforming) {
+    band_down_ = kConformingBand;
+    return;
+  }
+  if (level.cuts.size() == 0 || level.compliance) return;
   band_down_ = pressure_ && traits.stiffness >= kStiff ? 2 : 1;
   if (traits.stiffness <= kGentle) last_once_ = std::max(last_once_, top_);
 }
@@ -116,6 +128,7 @@ kernels::LevelSystem<T> Cycle<T>::system(int l) {
                             .f = level.f.view(),
                             .dq = level.dq.data(),
                             .fq = level.fq.data(),
+                            .band = &level.band,
                             .product = level.solid.product.view(),
                             .largest = level.solid.largest};
   s.membrane.clamp_width = clamp_width_;
@@ -173,7 +186,7 @@ void Cycle<T>::descend(int l, CycleKind kind, bool from_zero) {
 template <class T>
 void Cycle<T>::relax_down(int l, bool from_zero) {
   const kernels::LevelSystem<T> fine = system(l), coarse = system(l + 1);
-  kernels::RelaxStages stages{.from_zero = from_zero, .curves_again = curves_again_};
+  kernels::RelaxStages stages{.from_zero = from_zero};
   if (sweeps_once(l)) stages.volume = kernels::VolumeSweeps::reverse;
   if (l == top_ && !smoother_ && patches_.empty()) stages.band = band_down_;
   if (smoother_) {
@@ -196,7 +209,7 @@ template <class T>
 void Cycle<T>::relax_up(int l) {
   const kernels::LevelSystem<T> fine = system(l);
   const kernels::Unknowns<const T> correction = system(l + 1).d;
-  kernels::RelaxStages stages{.curves_again = curves_again_};
+  kernels::RelaxStages stages;
   if (sweeps_once(l)) stages.volume = kernels::VolumeSweeps::forwards;
   if (!smoother_ && patches_.empty()) stages.band = band_up_;
   if (smoother_ || !patches_.empty()) stages.sweeps = kernels::Sweeps::none;

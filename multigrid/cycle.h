@@ -36,8 +36,8 @@ class Cycle {
   /// Relaxes all rows along the curves at once, too, as exact rows need (curve_patch.h).
   void relax_patches(grid::MemoryMeter& meter);
 
-  /// Relaxes the band beside averaged curves once more before the first restriction, for a state
-  /// that was interpolated from a coarser level.
+  /// Relaxes the band beside the curves once more before the first restriction, for a state that
+  /// was interpolated from a coarser level.
   void relax_band();
 
   /// One cycle for the top level's d, dq, from zero or from what they are. f is changed: it carries
@@ -67,10 +67,9 @@ class Cycle {
   T clamp_width_ = T(1);
   CoarseSolver<T> bottom_;
   std::optional<KaczmarzSmoother<T>> smoother_;
-  std::vector<CurvePatch<T>> patches_;      ///< of all levels but the bottom, from the top
+  std::vector<CurvePatch<T>> patches_;  ///< of all levels but the bottom, from the top
   std::vector<T> residual_;
   int band_down_ = 0, band_up_ = 0;  ///< RelaxStages::band of the top level, and of all
-  bool curves_again_ = true;
   int last_once_ = -1;  ///< the last level whose volume rows are swept once a relaxation
 };
 

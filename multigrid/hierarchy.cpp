@@ -77,7 +77,8 @@ Hierarchy<T>::Hierarchy(const grid::Lattice& lattice, const grid::Material& mate
     Level<T>& level = levels_.emplace_back(nx, ny, spacing, traits, meter);
     if (kernels::isotropic(traits.model) && levels_.size() > 1)
       level.solid.tangent = grid::Field<T>(nx, 10 * ny, meter);
-    level.cuts = CutRows<T>(rows, nx);
+    level.cuts = CutRows<T>(rows);
+    if (!rows.column.empty()) level.set_band(rows.row_begin, rows.column, meter);
     level.wanted = rows.wanted;
     level.q.assign(2 * rows.column.size(), T(0));
     level.dq = level.fq = level.q;

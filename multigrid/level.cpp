@@ -6,8 +6,8 @@
 namespace drumhead::multigrid {
 namespace {
 
-// Half width of the band beside the curves. What the first cycles leave at S1, kappa 100, 400²:
-// .33, .52 with 1, .28, .56 with 2, .22, .58 with 3 (and two such sweeps a cycle).
+// Half width of the band beside the curves. Averaged rows: what the first cycles leave at S1, kappa
+// 100, 400²: .33, .52 with 1, .28, .56 with 2, .22, .58 with 3 (and two such sweeps a cycle).
 constexpr int kBand = 2;
 // Strength of the jump of pressures between parts. RMS error in px of S4, means of three offsets,
 // without it and with .125, .25, .5: kappa 10, 100² .163 .135 .130 .131; kappa 100, 100² .82 .54
@@ -20,7 +20,7 @@ constexpr double kPartJump = 0.5;
 }  // namespace
 
 template <class T>
-CutRows<T>::CutRows(const grid::CutCells& cuts, int columns)
+CutRows<T>::CutRows(const grid::CutCells& cuts)
     : row_begin_(cuts.row_begin),
       column_(cuts.column),
       link_begin_(cuts.link_begin),
@@ -30,28 +30,6 @@ CutRows<T>::CutRows(const grid::CutCells& cuts, int columns)
   for (const auto& weight : cuts.weight)
     for (const double w : weight) weight_.push_back(T(w));
   divide_jump({});
-  set_band(columns);
-}
-
-template <class T>
-void CutRows<T>::set_band(int columns) {
-  const int rows = int(row_begin_.size()) - 1;
-  std::vector<int> cut;
-  for (int j = 0; j < rows; ++j) {
-    band_begin_.push_back(int(band_.size()));
-    const int low = row_begin_[std::size_t(std::max(0, j - kBand))];
-    const int high = row_begin_[std::size_t(std::min(rows, j + kBand + 1))];
-    cut.assign(column_.begin() + low, column_.begin() + high);
-    std::ranges::sort(cut);
-    for (const int i : cut) {
-      const int begin = std::max(0, i - kBand), end = std::min(columns, i + kBand + 1);
-      if (int(band_.size()) > band_begin_.back() && begin <= band_.back().end)
-        band_.back().end = end;
-      else
-        band_.push_back({begin, end});
-    }
-  }
-  band_begin_.push_back(int(band_.size()));
 }
 
 template <class T>
@@ -88,17 +66,12 @@ kernels::Cuts<T> CutRows<T>::view(T jump) const {
           .link_begin = link_begin_.data(),
           .link = link_.data(),
           .link_strength = strength_.data(),
-          .jump = jump,
-          .band_begin = band_begin_.data(),
-          .band = band_.data()};
+          .jump = jump};
 }
 
 template <class T>
 std::size_t CutRows<T>::bytes() const {
-  return band_.size() * sizeof(kernels::Span) +
-         (band_begin_.size() + row_begin_.size() + column_.size() + link_begin_.size() +
-          link_.size()) *
-             sizeof(int) +
+  return (row_begin_.size() + column_.size() + link_begin_.size() + link_.size()) * sizeof(int) +
          (weight_.size() + compliance_.size() + length_.size() + link_diagonal_.size() +
           strength_.size()) *
              sizeof(T);
@@ -156,6 +129,14 @@ kernels::Membrane<T> Level<T>::harmonic() const {
 }
 
 template <class T>
+void Level<T>::set_band(const std::vector<int>& row_begin, const std::vector<int>& column,
+                        grid::MemoryMeter& meter) {
+  if (kernels::isotropic(solid.law.model)) return;
+  band = kernels::Band(row_begin, column, nx, kBand, bool(conforming));
+  meter.add(band.bytes());
+}
+
+template <class T>
 void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   conforming = std::make_unique<ConformingLevel<T>>(std::move(cells), spacing);
   conforming->rows = kernels::SpecialRows<T>(conforming->cells, membrane());
@@ -166,6 +147,7 @@ void Level<T>::conform(grid::ConformingCells cells, grid::MemoryMeter& meter) {
   if (solid.law.relief > T(0)) conforming->shift.assign(conforming->cells.triangle.size(), T(0));
   set_held<T>(*conforming, ux.view(), uy.view());
   meter.add(conforming->bytes());
+  set_band(conforming->cells.row_begin, conforming->cells.column, meter);
 }
 
 template <class T>

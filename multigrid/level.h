@@ -33,8 +33,7 @@ template <class T>
 class CutRows {
  public:
   CutRows() = default;
-  /// Of a lattice that is `columns` cells wide.
-  CutRows(const grid::CutCells& cuts, int columns);
+  explicit CutRows(const grid::CutCells& cuts);
   kernels::Cuts<T> view(T jump) const;
   int size() const { return int(length_.size()); }
   std::size_t bytes() const;
@@ -43,11 +42,7 @@ class CutRows {
   void divide_jump(const kernels::Plane<const T>& mu);
 
  private:
-  /// The cells within kBand columns and rows of a cut one.
-  void set_band(int columns);
-
-  std::vector<int> row_begin_, column_, link_begin_, link_, band_begin_;
-  std::vector<kernels::Span> band_;
+  std::vector<int> row_begin_, column_, link_begin_, link_;
   std::vector<T> weight_, compliance_, length_, link_diagonal_, strength_;
 };
 
@@ -75,6 +70,8 @@ struct Level {
   /// Where the lattice conforms to the curves; there are no curve rows then.
   std::unique_ptr<ConformingLevel<T>> conforming;
 
+  kernels::Band band;  ///< cells beside curves
+
   // State: of the solution where Newton runs, restricted from it on coarser levels.
   grid::Field<T> ux, uy, pressure;
   std::vector<T> q;
@@ -99,6 +96,9 @@ struct Level {
   kernels::Membrane<T> harmonic() const;
   /// State, linear system and what Newton's method has made of the law as they were at first.
   void clear(const kernels::Law<T>& law);
+  /// Of the cells listed in these columns, row by row; not with isotropic membranes.
+  void set_band(const std::vector<int>& row_begin, const std::vector<int>& column,
+                grid::MemoryMeter& meter);
   /// Makes the level conform to curves.
   void conform(grid::ConformingCells cells, grid::MemoryMeter& meter);
   std::size_t nodes() const { return std::size_t(nx + 1) * std::size_t(ny + 1); }

@@ -148,7 +148,7 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, b
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
       level.nodes() < kSmallNodes)
     linear.kind = CycleKind::v;
-  linear.band = !start && averaged(hierarchy, options);
+  linear.band = level.conforming || (!start && averaged(hierarchy, options));
   if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.reduction = kReduction;
     const bool soft = level.mu && hierarchy.traits().stiffness >= kSoft;

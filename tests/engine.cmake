@@ -21,7 +21,7 @@ foreach(name coarse_membranes membranes)
     SOURCES kernels_${name}_test.cpp support/oracle_membrane.cpp
     LINK drumhead_kernel_oracle LABEL unit)
 endforeach()
-foreach(name folds fused isa properties reduce threads transfer)
+foreach(name band folds fused isa properties reduce threads transfer)
   drumhead_test(NAME kernels_${name}_test SOURCES kernels_${name}_test.cpp
     LINK drumhead_fields LABEL unit)
 endforeach()

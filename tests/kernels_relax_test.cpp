@@ -32,36 +32,18 @@ constexpr double kTolerance = std::is_same_v<T, float> ? 2e-4 : 1e-11;
 class Band {
  public:
   template <class T>
-  explicit Band(const RandomLevel<T>& level) : nx_(level.spec.nx) {
-    for (int j = 0; j < level.spec.ny; ++j) {
-      begin_.push_back(int(spans_.size()));
-      for (int i = 0; i < nx_; ++i) {
-        inside_.push_back(false);
-        for (int k = 0; k < level.cuts.size(); ++k)
-          if (std::abs(level.cuts.row[std::size_t(k)] - j) <= 1 &&
-              std::abs(level.cuts.column[std::size_t(k)] - i) <= 1)
-            inside_.back() = true;
-        if (!inside_.back()) continue;
-        if (i > 0 && inside_[inside_.size() - 2])
-          spans_.back().end = i + 1;
-        else
-          spans_.push_back({i, i + 1});
-      }
-    }
-    begin_.push_back(int(spans_.size()));
+  explicit Band(const RandomLevel<T>& level) : row_(level.cuts.row), column_(level.cuts.column) {}
+  bool has(int i, int j) const {
+    for (std::size_t k = 0; k < row_.size(); ++k)
+      if (std::abs(row_[k] - j) <= 1 && std::abs(column_[k] - i) <= 1) return true;
+    return false;
   }
-  bool has(int i, int j) const { return inside_[std::size_t(j * nx_ + i)]; }
-  template <class T>
-  void set(kernels::Cuts<T>& cuts) const {
-    cuts.band_begin = begin_.data();
-    cuts.band = spans_.data();
+  kernels::Band of_kernels(const int* row_begin, int nx, int ny) const {
+    return {{row_begin, row_begin + ny + 1}, column_, nx, 1, false};
   }
 
  private:
-  int nx_;
-  std::vector<bool> inside_;
-  std::vector<int> begin_;
-  std::vector<kernels::Span> spans_;
+  std::vector<int> row_, column_;
 };
 
 /// The relaxation of the oracle.
@@ -226,7 +208,8 @@ TYPED_TEST(KernelsRelax, TheBandBesideCurvesEqualsItsPartOfTheAssembledRelaxatio
       fields::on_every_isa([&] {
         RandomLevel<T> level(spec);
         kernels::LevelSystem<T> system = level.system();
-        band.set(system.cuts);
+        const kernels::Band spans = band.of_kernels(system.cuts.row_begin, spec.nx, spec.ny);
+        system.band = &spans;
         kernels::RowScratch<T> scratch(spec.nx, 1);
         kernels::relax<T>(system, {.sweeps = kernels::Sweeps::none, .band = 1}, nullptr, nullptr,
                           scratch);

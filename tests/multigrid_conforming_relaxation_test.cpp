@@ -43,21 +43,34 @@ class DenseRelaxation {
     d_.setZero();
   }
 
-  Eigen::VectorXd run() {
-    for (const int colour : {0, 1})
-      Scene::for_interior([&](int i, int j) {
-        if ((i + j + colour) % 2 == 0 && !near(i, j)) gauss_seidel(i, j);
-      });
-    near_nodes();
-    for (const bool reverse : {false, true})
-      for (const int rows : {0, 1}) volume_rows(rows != reverse, reverse, true);
-    near_nodes();
-    for (const bool reverse : {false, true})
-      for (const int rows : {0, 1}) volume_rows(rows != reverse, reverse, false);
+  /// `bands`: relaxations of the regular cells within kBand columns and rows of special ones, and
+  /// of those.
+  Eigen::VectorXd run(int bands) {
+    sweep([](int, int) { return true; }, true);
+    for (int n = 0; n < bands; ++n) sweep([&](int i, int j) { return in_band(i, j); }, false);
     return d_;
   }
 
  private:
+  static constexpr int kBand = 2;
+  bool in_band(int i, int j) const {
+    bool beside = false;
+    for (int y = std::max(0, j - kBand); y <= std::min(kNy - 1, j + kBand); ++y)
+      for (int x = i - kBand; x <= i + kBand; ++x) beside = beside || scene_.special(x, y);
+    return beside && !scene_.special(i, j);
+  }
+  /// Of cells, and nodes at corners 00 of cells, that are `relaxed`.
+  template <class F>
+  void sweep(F&& relaxed, bool forwards) {
+    for (const int colour : {0, 1})
+      Scene::for_interior([&](int i, int j) {
+        if ((i + j + colour) % 2 == 0 && !near(i, j) && relaxed(i, j)) gauss_seidel(i, j);
+      });
+    near_nodes();
+    for (const bool reverse : {false, true})
+      for (const int rows : {0, 1})
+        if (reverse || forwards) volume_rows(rows != reverse, reverse, relaxed);
+  }
   bool near(int i, int j) const {
     return scene_.known(i, j) || scene_.special(i - 1, j - 1) || scene_.special(i, j - 1) ||
            scene_.special(i - 1, j) || scene_.special(i, j);
@@ -80,14 +93,15 @@ class DenseRelaxation {
   }
   /// Row by row the regular cells, then the parts, of each those of even columns first unless
   /// `reverse`.
-  void volume_rows(bool row_parity, bool reverse, bool with_regular) {
+  template <class F>
+  void volume_rows(bool row_parity, bool reverse, F&& relaxed) {
     for (int j = row_parity; j < kNy; j += 2)
       for (const bool regular : {true, false})
         for (const bool columns : {reverse, !reverse})
           for (int i = int(columns); i < kNx; i += 2)
             if (!regular)
               parts(i, j, reverse);
-            else if (with_regular && !scene_.special(i, j))
+            else if (!scene_.special(i, j) && relaxed(i, j))
               kaczmarz(number_.cell[std::size_t(j * kNx + i)], true);
   }
   void parts(int i, int j, bool reverse) {
@@ -132,7 +146,8 @@ kernels::LevelSystem<double> system_of(Scene& scene) {
                                       .d = level.d.view(),
                                       .f = level.f.view(),
                                       .dq = level.dq.data(),
-                                      .fq = level.fq.data()};
+                                      .fq = level.fq.data(),
+                                      .band = &level.band};
   system.transfer = &level.conforming->to_coarse;
   system.coarse_special = &scene.hierarchy[1].conforming->rows;
   return system;
@@ -142,7 +157,7 @@ class ConformingRelaxation : public testing::TestWithParam<Weights> {};
 INSTANTIATE_TEST_SUITE_P(HardAndSoft, ConformingRelaxation, testing::ValuesIn(kWeights));
 
 TEST_P(ConformingRelaxation, IsGaussSeidelAndKaczmarzOnTheAssembledMatrix) {
-  for (const double jump : {0.0, 0.4}) {
+  for (const auto& [jump, bands] : {std::pair(0.0, 0), std::pair(0.4, 0), std::pair(0.4, 2)}) {
     Scene scene(GetParam());
     scene.level.clamp_width = 0.5;
     scene.level.pressure_jump = jump;
@@ -150,9 +165,9 @@ TEST_P(ConformingRelaxation, IsGaussSeidelAndKaczmarzOnTheAssembledMatrix) {
     const Eigen::VectorXd f = Eigen::VectorXd::Random(matrix.rows());
     scene.scatter(f, scene.level.f.view());
     scene.level.d.clear();
-    kernels::relax<double>(system_of(scene), {.from_zero = true}, nullptr, nullptr,
+    kernels::relax<double>(system_of(scene), {.from_zero = true, .band = bands}, nullptr, nullptr,
                            scene.hierarchy.scratch());
-    const Eigen::VectorXd expected = DenseRelaxation(scene, matrix, f).run();
+    const Eigen::VectorXd expected = DenseRelaxation(scene, matrix, f).run(bands);
     EXPECT_LT((scene.gather(scene.level.d.view()) - expected).cwiseAbs().maxCoeff(), 1e-11);
     EXPECT_EQ(scene.gather(scene.level.f.view()), f);
   }

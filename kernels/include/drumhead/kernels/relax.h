@@ -14,6 +14,7 @@
 // the inner product of D, forwards and in reverse.
 #include <vector>
 
+#include <drumhead/kernels/band.h>
 #include <drumhead/kernels/cuts.h>
 #include <drumhead/kernels/special.h>
 #include <drumhead/kernels/views.h>
@@ -32,6 +33,8 @@ struct LevelSystem {
   /// With special cells: to the coarser level, and that level's rows.
   const SpecialTransfer<T>* transfer = nullptr;
   const SpecialRows<T>* coarse_special = nullptr;
+  /// Cells beside the curves, without special ones; only RelaxStages::band asks for it.
+  const Band* band = nullptr;
   Unknowns<T> product;  ///< isotropic membranes: room for H d
   T largest = T(2);     ///< isotropic membranes: largest eigenvalue of D⁻¹ H
 };
@@ -91,10 +94,9 @@ struct RelaxStages {
   bool from_zero = false;  ///< d.x, d.y, d.p are cleared first (dq must be 0 already)
   Sweeps sweeps = Sweeps::all;
   VolumeSweeps volume = VolumeSweeps::twice;
-  /// With Sweeps::all, near nodes and parts of special cells are relaxed once more at the end.
-  bool curves_again = true;
-  /// Relaxations (at most 2) of the band beside the curves (Cuts::band) at the end, whatever
-  /// `sweeps` says: its nodes, its volume rows as often as all are swept, and all curve rows.
+  /// Relaxations (at most 2) of the band beside the curves (LevelSystem::band) at the end, whatever
+  /// `sweeps` says: its nodes, its volume rows, as often as all are swept, and all curve rows; with
+  /// special cells also all near nodes and parts, and volume rows in reverse alone.
   int band = 0;
 };
 

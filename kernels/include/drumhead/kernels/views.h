@@ -158,9 +158,6 @@ struct Cuts {
   const int* link = nullptr;         ///< cuts that follow or precede along a curve
   const T* link_strength = nullptr;  ///< min(len_k, len_l)²/(len_k len_l)
   T jump = T(0);                     ///< qs/mu; 0: exact rows
-  /// The band of cells beside the curves: ny+1 indices into its spans of columns, sorted, disjoint.
-  const int* band_begin = nullptr;
-  const Span* band = nullptr;
 };
 
 }  // namespace drumhead::kernels
