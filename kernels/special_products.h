@@ -176,19 +176,26 @@ template <class T>
   return sum;
 }
 
-/// Runs body(kSoft, kJumps as std::bool_constant): whether any curve is soft, and whether parts are
-/// joined to their neighbours.
+/// Which neighbours jumps join parts to.
+enum class Joined { none, parts, parts_and_cells };
+
+/// Runs body(kSoft, kJoined as std::integral_constant): whether any curve is soft, and what parts
+/// are joined to.
 template <class T, class F>
 void with_kind(const SpecialRows<T>& rows, F&& body) {
-  using std::false_type, std::true_type;
-  if (rows.soft())
-    rows.has_jumps() ? body(true_type{}, true_type{}) : body(true_type{}, false_type{});
-  else
-    rows.has_jumps() ? body(false_type{}, true_type{}) : body(false_type{}, false_type{});
+  const auto with_soft = [&](auto soft) {
+    if (rows.has_border_jumps())
+      body(soft, std::integral_constant<Joined, Joined::parts_and_cells>{});
+    else if (rows.has_jumps())
+      body(soft, std::integral_constant<Joined, Joined::parts>{});
+    else
+      body(soft, std::integral_constant<Joined, Joined::none>{});
+  };
+  rows.soft() ? with_soft(std::true_type{}) : with_soft(std::false_type{});
 }
 
 /// Cell row j of a correction as its parts see it.
-template <class T, bool kSoft, bool kJumps>
+template <class T, bool kSoft, Joined kJoined>
 class PartRowView {
  public:
   PartRowView(const SpecialRows<T>& rows, const Unknowns<const T>& d, int j)
@@ -206,7 +213,7 @@ class PartRowView {
     T product = (Four<T>(row.bx) * x + Four<T>(row.by) * y).sum() -
                 (row.compliance + row.jumps) * listed_[p];
     if constexpr (kSoft) product += curve_of_part(*rows_.soft(), p, curve_);
-    if constexpr (kJumps) product += neighbour_jumps(p, i);
+    if constexpr (kJoined != Joined::none) product += neighbour_jumps(p, i);
     return product;
   }
 
@@ -214,6 +221,12 @@ class PartRowView {
   /// What the jumps add: the neighbours' share.
   [[gnu::always_inline]] T neighbour_jumps(int p, int i) const {
     const PartJumps<T>& row = rows_.jumps(p);
+    if constexpr (kJoined == Joined::parts) {
+      const Four<T> parts(listed_[row.part[0]], listed_[row.part[1]], listed_[row.part[2]],
+                          listed_[row.part[3]]);
+      const T sum = (Four<T>(row.jump) * parts).sum();
+      return row.more ? sum + further_jumps(rows_, listed_, p) : sum;
+    }
     const std::ptrdiff_t odd = i & 1, half = i >> 1;
     const T* const cells = p_ + half;
     const T *own = cells + odd * odd_, *east = cells + ((1 - odd) * odd_ + odd);

@@ -223,10 +223,11 @@ void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
   for (BorderJump<T>& border : border_) border.jump = jump(border.neighbour);
 }
 
+/// That of pressure_jump.h across the piece of side that part p of cell (i, j) shares with `other`.
 template <class T>
-void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i, int j) {
+T SpecialRows<T>::coarse_jump(const Membrane<T>& m, std::size_t p, const PartNeighbour& other,
+                              int i, int j) const {
   const SpecialCells<T>& cells = *cells_;
-  const PartNeighbour& other = cells.neighbour[std::size_t(k)];
   const int begin = cells.vertex_begin[p], end = cells.vertex_begin[p + 1];
   const PartVertex<T>& from = cells.vertex[std::size_t(other.vertex)];
   const PartVertex<T>& to =
@@ -234,10 +235,18 @@ void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i,
   const Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, from.vertex),
                    v = at_vertex(cells, m.ux, m.uy, i, j, to.vertex);
   const T ex = (to.x - from.x) + (v.x - u.x), ey = (to.y - from.y) + (v.y - u.y);
+  const std::size_t side = std::size_t(other.side);
+  const T mu = mu_at(m, i, j) + mu_at(m, i + kEast[side], j + kNorth[side]);
+  return T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu;
+}
+
+template <class T>
+void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i, int j) {
+  const SpecialCells<T>& cells = *cells_;
+  const PartNeighbour& other = cells.neighbour[std::size_t(k)];
   const int side = other.side;
-  const T mu =
-      mu_at(m, i, j) + mu_at(m, i + kEast[std::size_t(side)], j + kNorth[std::size_t(side)]);
-  const T jump = T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu + own_jump(k);
+  T jump = own_jump(k);
+  if (has_border_jumps_) jump += coarse_jump(m, p, other, i, j);
   jump_[std::size_t(k)] = jump;
   part_[p].jumps += jump;
   PartJumps<T>& row = part_jumps_[p];
@@ -247,7 +256,7 @@ void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i,
   row.more |= !first;
   if (!first) return;
   row.jump[side] = jump;
-  row.part[side] = other.part;
+  if (other.part >= 0 || has_border_jumps_) row.part[side] = other.part;
 }
 
 template <class T>

@@ -49,8 +49,8 @@ void overwrite_near_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
 template <class T>
 void overwrite_part_row(const SpecialRows<T>& rows, const Unknowns<const T>* f,
                         const Unknowns<const T>& d, const SplitRow<T>& out_p, T* out, int j) {
-  with_kind(rows, [&](auto soft, auto jumps) {
-    const PartRowView<T, soft.value, jumps.value> view(rows, d, j);
+  with_kind(rows, [&](auto soft, auto joined) {
+    const PartRowView<T, soft.value, joined.value> view(rows, d, j);
     const SpecialCells<T>& cells = rows.cells();
     const int begin = cells.row_begin[std::size_t(j)], end = cells.row_begin[std::size_t(j) + 1];
     int p = cells.part_begin[std::size_t(begin)];
@@ -86,17 +86,17 @@ void relax_near_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, cons
   });
 }
 
-/// Kaczmarz, weighted by the diagonal, on the parts of the special cells of column parity `parity`
-/// in cell row j, of a cell's the last part first if `reverse`.
+/// Kaczmarz, weighted by the diagonal, on the parts of the special cells in cell row j: those of
+/// even columns first, or, if `reverse`, those of odd ones and of a cell's the last part first.
 template <class T>
 void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, const Unknowns<T>& d,
-                    int parity, bool reverse, int j) {
-  with_kind(rows, [&](auto soft, auto jumps) {
-    const PartRowView<T, soft.value, jumps.value> view(rows, d, j);
+                    bool reverse, int j) {
+  with_kind(rows, [&](auto soft, auto joined) {
+    const PartRowView<T, soft.value, joined.value> view(rows, d, j);
     const T* const wanted = f.listed;
     T* const listed = d.listed;
     const int step = reverse ? -1 : 1;
-    for (const CellVisit<T>& visit : rows.visits(j, parity)) {
+    const auto relax = [&](const CellVisit<T>& visit) {
       const CornerValues<T> at_x(d.x, visit.column, j), at_y(d.y, visit.column, j);
       Four<T> x = at_x.load(), y = at_y.load();
       const Four<T> inverse(visit.inverse);
@@ -112,7 +112,9 @@ void relax_part_row(const SpecialRows<T>& rows, const Unknowns<const T>& f, cons
       }
       at_x.store(x);
       at_y.store(y);
-    }
+    };
+    for (const int parity : {int(reverse), int(!reverse)})
+      for (const CellVisit<T>& visit : rows.visits(j, parity)) relax(visit);
   });
 }
 
@@ -179,8 +181,7 @@ void relax_volume_and_parts(const SpecialRows<T>& rows, const Unknowns<T>& f, co
   with_border_jumps(rows, f, d, j, kept, sweep);
   for (const int row : {j, j + 1})
     for (const int i : rows.loose(row)) d.x.at(i, row) = d.y.at(i, row) = T(0);
-  for (const int parity : {int(reverse), int(!reverse)})
-    relax_part_row<T>(rows, f, d, parity, reverse, j);
+  relax_part_row<T>(rows, f, d, reverse, j);
 }
 
 /// After the prolonged correction of the coarser level was added to rows j of nodes and cells:

@@ -160,7 +160,7 @@ struct PartRow {
 template <class T>
 struct PartJumps {
   T jump[4] = {};     ///< 0: none
-  int part[4] = {};   ///< −1: a regular cell; where none is, the part itself
+  int part[4] = {};   ///< −1: a regular cell that it is joined with; the part itself: none
   bool more = false;  ///< it has more than one across a side
 };
 /// A regular cell and a part that is its neighbour.
@@ -273,6 +273,8 @@ class SpecialRows {
   void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
   void set_own_jumps(const Membrane<T>& membrane);
   void set_jumps(const Membrane<T>& membrane);
+  T coarse_jump(const Membrane<T>& membrane, std::size_t part, const PartNeighbour& other, int i,
+                int j) const;
   void set_jump(const Membrane<T>& membrane, std::size_t part, int neighbour, int i, int j);
   void set_steps(const Membrane<T>& membrane);
 
