@@ -40,7 +40,6 @@ constexpr double kModelError = 2.0, kSlow = 0.5;
 // theta was too large.
 constexpr double kUnsolved = 0.3;
 constexpr int kMostPatience = 32;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // A linear solution counts as accurate.
 constexpr double kAccurate = 0.1;
 
