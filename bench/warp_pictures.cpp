@@ -33,12 +33,13 @@ bool draw(const std::filesystem::path& file, const std::filesystem::path& folder
   if (drawn && options.curves.empty()) options.curves = options.picture;
   const driver::Image picture =
       drawn ? driver::rasterise(options.picture) : driver::read_image(options.picture);
-  const driver::SvgCurves drawing =
-      driver::read_curves(driver::SvgDocument(options.curves), picture.width(), picture.height());
+  const std::vector<driver::SvgCurve> curves =
+      driver::read_curves(driver::SvgDocument(options.curves), picture.width(), picture.height(),
+                          [](const std::string&) {});
   bench::WarpScene scene{
       file.stem().string(), {}, {options.kappa}, picture.width(), picture.height()};
   scene.problem.lattice = grid::make_lattice(scene.width, scene.height, options.lattice);
-  scene.problem.curves = driver::apply_settings(options, drawing.curves);
+  scene.problem.curves = driver::apply_settings(options, curves);
 
   driver::Progress progress(true);
   driver::Seconds seconds;
@@ -47,7 +48,7 @@ bool draw(const std::filesystem::path& file, const std::filesystem::path& folder
     const auto name = [&](const char* suffix) {
       return folder / (scene.name + "-" + method + suffix);
     };
-    driver::make_pictures({picture, solution, drawing.curves, frame},
+    driver::make_pictures({picture, solution, curves, frame},
                           {.output = name(".png"), .checkerboard = name("-checkerboard.png")},
                           nullptr, progress, seconds);
   };

@@ -78,22 +78,26 @@ void walk(const SvgDocument& document, pugi::xml_node parent, Role role,
   }
 }
 
+using Warn = std::function<void(const std::string&)>;
+
 class CurveReader {
  public:
-  CurveReader(const SvgDocument& document, double width_px, double height_px)
-      : document_(document), view_(document.view().value_or(SvgView{0, 0, width_px, height_px})) {
+  CurveReader(const SvgDocument& document, double width_px, double height_px, const Warn& warn)
+      : document_(document),
+        warn_(warn),
+        view_(document.view().value_or(SvgView{0, 0, width_px, height_px})) {
     const double x_scale = width_px / view_.width, y_scale = height_px / view_.height;
     if (std::abs(x_scale / y_scale - 1.0) > 0.01) {
       char text[160];
       std::snprintf(text, sizeof text,
                     ": the drawing is %g x %g and is stretched onto a picture of %g x %g pixels",
                     view_.width, view_.height, width_px, height_px);
-      curves_.warnings.push_back(document.file().string() + text);
+      warn_(document.file().string() + text);
     }
     to_picture_ = Geom::Translate(-view_.x, -view_.y) * Geom::Scale(x_scale, y_scale);
   }
 
-  SvgCurves read() {
+  std::vector<SvgCurve> read() {
     walk(document_, document_.root(), Role::none, to_picture_,
          [this](pugi::xml_node element, Role layer, const Geom::Affine& to_picture) {
            visit(element, layer, to_picture);
@@ -131,8 +135,8 @@ class CurveReader {
                affine;
     } else if (!is_shape(element)) {
       if (kind(element) == "text" || kind(element) == "image")
-        curves_.warnings.push_back(document_.named_place(element) +
-                                   " is not a path and no curve; Inkscape: Path > Object to Path");
+        warn_(document_.named_place(element) +
+              " is not a path and no curve; Inkscape: Path > Object to Path");
       return;
     }
     if (suffix != Role::none && suffix != role) {
@@ -231,8 +235,8 @@ class CurveReader {
       document_.fail(target.element, "'" + name + "' is open but its source is closed");
     }
     if (closed(from) && area(from) * area(to) < 0) {
-      curves_.warnings.push_back(document_.place(target.element) + ": '" + name +
-                                 "' runs the other way round than its source: the warp folds over");
+      warn_(document_.place(target.element) + ": '" + name +
+            "' runs the other way round than its source: the warp folds over");
     }
     add_curve(source, k, std::move(from), std::move(to));
   }
@@ -254,7 +258,7 @@ class CurveReader {
     curve.pair.target = std::move(target);
     curve.pin = drawn.role == Role::pin;
     curve.place = document_.named_place(drawn.element);
-    curves_.curves.push_back(std::move(curve));
+    curves_.push_back(std::move(curve));
   }
 
   static std::string part_name(const Drawn& one, std::size_t k) {
@@ -276,10 +280,11 @@ class CurveReader {
   }
 
   const SvgDocument& document_;
+  const Warn& warn_;
   SvgView view_;
   Geom::Affine to_picture_;
   std::vector<Drawn> drawn_;
-  SvgCurves curves_;
+  std::vector<SvgCurve> curves_;
 };
 
 void add_curve_elements(pugi::xml_node parent, std::vector<pugi::xml_node>& elements) {
@@ -298,8 +303,9 @@ void add_curve_elements(pugi::xml_node parent, std::vector<pugi::xml_node>& elem
 
 }  // namespace
 
-SvgCurves read_curves(const SvgDocument& document, double width_px, double height_px) {
-  return CurveReader(document, width_px, height_px).read();
+std::vector<SvgCurve> read_curves(const SvgDocument& document, double width_px, double height_px,
+                                  const Warn& warn) {
+  return CurveReader(document, width_px, height_px, warn).read();
 }
 
 std::vector<pugi::xml_node> curve_elements(const SvgDocument& document) {

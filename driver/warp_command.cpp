@@ -196,10 +196,10 @@ int run_warp(Options options) {
   const Image picture = read_picture(options, progress);
   std::optional<Image> plate;
   if (!options.plate.empty()) plate = read_plate(options.plate, picture);
-  const SvgCurves drawing =
-      read_curves(SvgDocument(options.curves), picture.width(), picture.height());
-  for (const std::string& warning : drawing.warnings) progress.warn(warning);
-  const multigrid::WarpProblem problem = problem_of(options, picture, drawing.curves);
+  const std::vector<SvgCurve> curves =
+      read_curves(SvgDocument(options.curves), picture.width(), picture.height(),
+                  [&](const std::string& warning) { progress.warn(warning); });
+  const multigrid::WarpProblem problem = problem_of(options, picture, curves);
   const std::optional<multigrid::Solution> start = start_of(options, problem.lattice);
   const Frame frame = frame_of(picture, problem.lattice, options.expand);
   seconds.read = watch.lap();
@@ -210,7 +210,7 @@ int run_warp(Options options) {
   watch.lap();
 
   PagePictures page;
-  make_pictures({picture, solution, drawing.curves, frame, options.border, options.threads,
+  make_pictures({picture, solution, curves, frame, options.border, options.threads,
                  plate ? &*plate : nullptr},
                 {.output = outputs.wanted(options.output),
                  .overlay = outputs.wanted(options.overlay),

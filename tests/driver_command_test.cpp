@@ -56,6 +56,17 @@ TEST_F(DriverCommand, RefusesBrokenPathData) {
                  {"bad.svg:2: path 'p7': broken path data at 'x9'"});
 }
 
+TEST_F(DriverCommand, WarnsOfADrawingBeforeItRefusesIt) {
+  scratch.write("bad.svg", drawing(40, 80, "<g id='source'><path id='brow' d='M1 1 L9 9'/></g>"));
+  const RunResult result =
+      run_drumhead(scratch, {"warp", "photo.png", "bad.svg", "-o", "out.png", "--quiet"});
+  EXPECT_EQ(result.exit_code, 2);
+  const auto warning = result.err.find("warning: bad.svg: the drawing is 40 x 80 and is stretched");
+  const auto error = result.err.find("has no target");
+  EXPECT_LT(warning, error) << result.err;
+  EXPECT_NE(error, std::string::npos) << result.err;
+}
+
 TEST_F(DriverCommand, RefusesHalfFloatMapsAndSaysWhy) {
   expect_refused(
       {"warp", "photo.png", "curves.svg", "--backward-map", "b.exr", "--map-depth", "half"},

@@ -14,9 +14,20 @@ namespace {
 /// The drawing's view is (-10, 20) + 200 × 100, the picture has 400 × 200 pixels.
 grid::Point in_picture(double x, double y) { return {2 * (x + 10), 2 * (y - 20)}; }
 
+struct SvgCurves {
+  std::vector<SvgCurve> curves;
+  std::vector<std::string> warnings;
+};
+
+SvgCurves read_file(const std::filesystem::path& file, double width, double height) {
+  SvgCurves read;
+  read.curves = read_curves(SvgDocument(file), width, height,
+                            [&](const std::string& warning) { read.warnings.push_back(warning); });
+  return read;
+}
+
 const SvgCurves& torture() {
-  static const SvgCurves curves =
-      read_curves(SvgDocument(DRUMHEAD_TEST_DATA "/torture.svg"), 400, 200);
+  static const SvgCurves curves = read_file(DRUMHEAD_TEST_DATA "/torture.svg", 400, 200);
   return curves;
 }
 
@@ -43,8 +54,7 @@ void expect_at(const std::string& name, std::size_t k, double t, double x, doubl
 
 SvgCurves read(const std::string& elements, double width = 100, double height = 100) {
   const Scratch scratch;
-  return read_curves(SvgDocument(scratch.write("curves.svg", drawing(100, 100, elements))), width,
-                     height);
+  return read_file(scratch.write("curves.svg", drawing(100, 100, elements)), width, height);
 }
 
 std::string error_of(const std::string& elements) {
@@ -180,7 +190,7 @@ TEST(DriverSvg, WithoutAViewUserUnitsArePixelsAndWithOneItIsStretched) {
   const Scratch scratch;
   const std::string curve = "<g id='pin'><path d='M 1 2 L 3 4'/></g></svg>";
   const auto start = [&](const std::string& root) {
-    return read_curves(SvgDocument(scratch.write("a.svg", root + curve)), 400, 200)
+    return read_file(scratch.write("a.svg", root + curve), 400, 200)
         .curves[0]
         .pair.source[0]
         .at(0.0);
@@ -261,10 +271,21 @@ TEST(DriverSvg, TextAmongCurvesIsLeftOutWithAWarning) {
   const auto file = scratch.write(
       "a.svg",
       "<svg><g id='pin'><title>t</title><path id='a' d='M1 1L9 9'/><text id='b'/></g></svg>");
-  const SvgCurves read = read_curves(SvgDocument(file), 10, 10);
+  const SvgCurves read = read_file(file, 10, 10);
   EXPECT_EQ(read.curves.size(), 1u);
   ASSERT_EQ(read.warnings.size(), 1u);
   EXPECT_NE(read.warnings[0].find("a.svg:1: text 'b' is not a path"), std::string::npos);
+}
+
+TEST(DriverSvg, AWarningIsHeardThoughTheRestCannotBeRead) {
+  const Scratch scratch;
+  const auto file = scratch.write(
+      "a.svg", "<svg><g id='source'><path id='a' d='M1 1L9 9'/><text id='b'/></g></svg>");
+  std::string heard;
+  const auto warn = [&](const std::string& warning) { heard += warning; };
+  EXPECT_NE(message_of([&] { read_curves(SvgDocument(file), 10, 10, warn); }).find("no target"),
+            std::string::npos);
+  EXPECT_NE(heard.find("text 'b' is not a path"), std::string::npos) << heard;
 }
 
 TEST(DriverSvg, TheViewMustBeARectangle) {
@@ -272,7 +293,7 @@ TEST(DriverSvg, TheViewMustBeARectangle) {
   for (const char* root : {"<svg viewBox='0 0 0 9'>", "<svg viewBox='0 0 9'>", "<svg viewBox='a'>",
                            "<svg width='-1' height='2'>", "<svg width='1em' height='2'>"}) {
     const auto file = scratch.write("a.svg", std::string(root) + "</svg>");
-    EXPECT_NE(message_of([&] { read_curves(SvgDocument(file), 10, 10); }).find("a.svg:1: svg: "),
+    EXPECT_NE(message_of([&] { read_file(file, 10, 10); }).find("a.svg:1: svg: "),
               std::string::npos)
         << root;
   }
