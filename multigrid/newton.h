@@ -39,6 +39,9 @@ struct NewtonOptions {
   double most_volume_gap = 0.0;  ///< and, if > 0, not before NewtonReport::volume_gap is below
   int least_steps = 1;
   int most_steps = 8;
+  /// So many steps in a row none of which moves nodes by less than half the least before stall; 0:
+  /// they do not.
+  int most_idle = 0;
   /// Of the steps on the level before: what a step's successor is expected to do before it is
   /// taken.
   std::vector<Contraction> expected;

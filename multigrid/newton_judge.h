@@ -60,7 +60,7 @@ class Judge {
       return end(Status::converged);
     }
     if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
-        unsolved_ >= kMostUnsolved)
+        unsolved_ >= kMostUnsolved || idles(step.dx_rms_px))
       return end(Status::stalled);
     // After a larger theta a step converges more slowly: no contraction is seen from it.
     const bool comparable = step.theta >= before.theta;
@@ -191,6 +191,12 @@ class Judge {
   bool ordinary(const NewtonStep& step) const {
     return step.step == 1.0 || (options_.lengthens && step.step > 1.0);
   }
+  bool idles(double move) {
+    const bool nearer = move > 0.0 && move < 0.5 * least_move_;
+    if (nearer) least_move_ = move;
+    idle_ = nearer ? 0 : idle_ + 1;
+    return options_.most_idle > 0 && idle_ >= options_.most_idle;
+  }
   bool areas_done() const {
     return options_.most_volume_gap == 0.0 || report_.volume_gap <= options_.most_volume_gap;
   }
@@ -213,6 +219,8 @@ class Judge {
   const NewtonOptions& options_;
   NewtonReport& report_;
   int creeping_ = 0, settled_ = 0, unsolved_ = 0, tiny_ = 0, calm_ = kCalm;
+  int idle_ = 0;  // steps since one moved nodes by less than half the least before
+  double least_move_ = std::numeric_limits<double>::infinity();
   double seen_before_ = 0.0, share_ = 0.0;
   bool only_areas_lack_ = false, uneven_ = false;
   bool areas_fail_ = false;  // the last step for areas alone was not taken

@@ -38,5 +38,24 @@ TEST(Judge, LargeFullMovesOfShortenedStepsEndNoRun) {
   for (int n = 0; n < 10; ++n) EXPECT_FALSE(ends_with_shortened(judge, {0.3, 0.9}));
 }
 
+TEST(Judge, StepsThatComeNoNearerStallWhereThatIsAskedFor) {
+  for (const int most_idle : {0, 3}) {
+    NewtonOptions options;
+    options.tolerance_rms = 1e-3;
+    options.most_idle = most_idle;
+    NewtonReport report;
+    Judge judge(options, report);
+    std::size_t ended = 0;
+    for (const double move : {8.0, 5.0, 3.0, 2.9, 2.0, 1.6, 1.0}) {
+      const NewtonStep step{
+          .step = 1.0, .krylov = 1, .residual = 0.1, .dx_rms_px = move, .dx_max_px = move};
+      if (ended == 0 && judge.ends_with(step, {move, move}, false, 0.0, 0.0, 1.0))
+        ended = report.steps.size();
+    }
+    EXPECT_EQ(ended, most_idle > 0 ? 6u : 0u);  // 3 is less than half of 8, and none of 3 itself
+    EXPECT_EQ(report.status, most_idle > 0 ? Status::stalled : Status::converged);
+  }
+}
+
 }  // namespace
 }  // namespace drumhead::multigrid
