@@ -104,7 +104,7 @@ if [ "$measure" ]; then
   stage tolerances speed_bench tolerances
   stage solvers speed_bench solvers $truth
   stage curves curves_bench $truth
-  stage solve solve_bench
+  stage solve solve_bench $large
   stage drag drag_bench
   stage mesh mesh_bench $truth
   stage amg amg_bench $large $truth
