@@ -62,9 +62,9 @@ class Judge {
     if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
         unsolved_ >= kMostUnsolved || idles(step.dx_rms_px))
       return end(Status::stalled);
-    // After a larger theta a step converges more slowly: no contraction is seen from it.
-    const bool comparable = step.theta >= before.theta;
-    const bool seen = !first && comparable && ordinary(step) && ordinary(before);
+    // No contraction is seen after a larger theta, which slows a step, or where nothing moved.
+    const bool comparable = step.theta >= before.theta, moved = before.dx_rms_px > 0.0;
+    const bool seen = !first && comparable && moved && ordinary(step) && ordinary(before);
     const bool rounded = seen && no_nearer(step, before, rounding);
     const double ratio = seen ? step.dx_rms_px / before.dx_rms_px : kUnknownRate;
     const double left = moves_left(ratio, step.residual);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <drumhead/kernels/model.h>
 #include <drumhead/multigrid/warp.h>
 
 #include "support/hard_cases.h"
@@ -79,6 +80,24 @@ TEST(DegenerateScene, CurvesFarOutsideAreNotCalledConverged) {
       EXPECT_FALSE(solution.report.notes.empty());
     }
   }
+}
+
+TEST(DegenerateScene, CurvesThatStayEndConvergedAtRest) {
+  using kernels::Model;
+  for (const Model model : {Model::crpm, Model::harmonic, Model::arap, Model::fold_free,
+                            Model::corotated, Model::linear, Model::neohookean, Model::stvk})
+    for (const CurveMethod method : {CurveMethod::averaged, CurveMethod::conforming}) {
+      multigrid::WarpProblem problem;
+      problem.lattice = grid::make_lattice(128, 96, {.cells = 16});
+      problem.material.model = model;
+      problem.material.kappa = model == Model::harmonic ? 0.0 : 10.0;
+      problem.curves = {line("still", {30, 40}, {90, 60}, {30, 40}, {90, 60})};
+      const multigrid::Solution solution = multigrid::solve(problem, {.curve_method = method});
+      EXPECT_EQ(solution.report.status, Status::converged)
+          << kernels::name(model) << ", " << multigrid::name(method);
+      for (const double u : solution.u_px) ASSERT_NEAR(u, 0.0, 1e-6);
+      for (const double v : solution.v_px) ASSERT_NEAR(v, 0.0, 1e-6);
+    }
 }
 
 TEST(DegenerateScene, MoreExactRowsThanNodesAreInfeasible) {
