@@ -112,6 +112,12 @@ std::string_view style_property(std::string_view style, std::string_view propert
   return {};
 }
 
+/// Drawings are read by recursion; programs that write them nest a few dozen elements.
+struct Depth : pugi::xml_tree_walker {
+  static constexpr int kMost = 1000;
+  bool for_each(pugi::xml_node&) override { return depth() < kMost; }
+};
+
 }  // namespace
 
 SvgDocument::SvgDocument(std::filesystem::path file) : file_(std::move(file)) {
@@ -130,6 +136,9 @@ SvgDocument::SvgDocument(std::filesystem::path file) : file_(std::move(file)) {
     throw std::invalid_argument(at_line(result.offset) +
                                 ": is not well-formed XML: " + result.description());
   }
+  if (Depth depth; !xml_.traverse(depth))
+    throw std::invalid_argument(file_.string() + ": elements are nested deeper than " +
+                                std::to_string(Depth::kMost));
   root_ = xml_.document_element();
   if (kind(root_) != "svg") throw std::invalid_argument(file_.string() + ": is not an SVG drawing");
 }

@@ -224,6 +224,8 @@ struct Broken {
 TEST(DriverSvg, ErrorsNameFileLineAndElement) {
   const std::string a = "<path id='a' d='M0 0L9 9'/>", b = "<path id='b' d='M0 0L9 9'/>";
   const std::string target_a = "<path id='a-target' d='M0 0L9 9'/>";
+  std::string nested;
+  for (int n = 0; n < 1000; ++n) nested = "<g>" + nested + "</g>";
   for (const auto& [elements, error] : std::vector<Broken>{
            {layers(a, ""), ":2: path 'a': 'a' has no target"},
            {layers(a, target_a + b), ":3: path 'b': 'b' has no source"},
@@ -258,6 +260,7 @@ TEST(DriverSvg, ErrorsNameFileLineAndElement) {
            {"<g id='a-source'>" + a + "</g>", "the suffix belongs on the name of a path"},
            {a + b, "curves.svg: no curves"},
            {"<g id='Source'>" + a + "</g>", "curves.svg: no curves"},
+           {nested, "curves.svg: elements are nested deeper than 1000"},
            {"<g id='source'>", "curves.svg:3: is not well-formed XML: Start-end tags mismatch"}}) {
     const std::string message = error_of(elements);
     EXPECT_NE(message.find(error), std::string::npos) << elements << "\n  " << message;
