@@ -2,6 +2,7 @@
 #include "image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "light.h"
@@ -171,6 +172,17 @@ int band_rows(int width) {
 
 Image read_image(const std::filesystem::path& file, const ReadOptions& options) {
   return Reader(file, options).read();
+}
+
+std::size_t make_finite(Image& image) {
+  constexpr float kGreatestHalf = 65504.0f;
+  std::size_t count = 0;
+  for (float& value : image.pixels) {
+    if (std::isfinite(value)) continue;
+    value = std::isnan(value) ? 0.0f : std::copysign(kGreatestHalf, value);
+    ++count;
+  }
+  return count;
 }
 
 void check_writable_format(const std::filesystem::path& file) {

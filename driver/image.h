@@ -38,6 +38,10 @@ struct ReadOptions {
 /// Throws std::invalid_argument naming the file and the reason; deep and volume images are refused.
 Image read_image(const std::filesystem::path& file, const ReadOptions& options = {});
 
+/// NaN becomes 0 and infinity the greatest half float: a filter would make holes of NaN, as wide as
+/// itself, of them. How many values there were.
+std::size_t make_finite(Image& image);
+
 /// Whether OpenImageIO writes pictures of this extension. Throws std::invalid_argument naming the
 /// file and the extensions that it does write.
 void check_writable_format(const std::filesystem::path& file);

@@ -161,6 +161,12 @@ Image read_picture(const Options& options, Progress& progress) {
                                                 : read_image(options.picture, read);
 }
 
+void replace_not_finite(Image& image, const fs::path& file, Progress& progress) {
+  if (const std::size_t count = make_finite(image); count > 0)
+    progress.warn(file.string() + ": " + std::to_string(count) +
+                  " values are not finite: NaN was taken as 0, infinity as 65504");
+}
+
 multigrid::Solution solve(const Options& options, const multigrid::WarpProblem& problem,
                           const std::optional<multigrid::Solution>& start, Progress& progress) {
   multigrid::SolverOptions solver{.solver = options.solver,
@@ -193,9 +199,11 @@ int run_warp(Options options) {
   check_files(options);
   Outputs outputs(options);
 
-  const Image picture = read_picture(options, progress);
+  Image picture = read_picture(options, progress);
+  replace_not_finite(picture, options.picture, progress);
   std::optional<Image> plate;
   if (!options.plate.empty()) plate = read_plate(options.plate, picture);
+  if (plate) replace_not_finite(*plate, options.plate, progress);
   const std::vector<SvgCurve> curves =
       read_curves(SvgDocument(options.curves), picture.width(), picture.height(),
                   [&](const std::string& warning) { progress.warn(warning); });

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "driver_scratch.h"
 #include "image.h"
@@ -118,6 +119,13 @@ TEST(DriverImage, ADeepPictureFitsIntoAShallowFormat) {
   const Scratch scratch;
   write_image(picture(16, 16, 3, OIIO::TypeDesc::UINT16), scratch / "a.jpg");
   EXPECT_EQ(read_image(scratch / "a.jpg").spec.format, OIIO::TypeDesc::UINT8);
+}
+
+TEST(DriverImage, ValuesThatAreNotFiniteAreReplaced) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Image image{OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), {NAN, kInfinity, -kInfinity, 7e20f}};
+  EXPECT_EQ(make_finite(image), 3U);
+  EXPECT_EQ(image.pixels, (std::vector<float>{0.0f, 65504.0f, -65504.0f, 7e20f}));
 }
 
 TEST(DriverImage, UnreadablePicturesAreNamed) {
