@@ -10,7 +10,7 @@ namespace drumhead::bench {
 
 std::vector<std::string> summary(const Measurements& measured);
 
-/// Processor, commit and dates of the runs, for the head of the page and of bench/README.md.
+/// Processor, commit and dates of the runs, for the page, bench/tables.md and README.md.
 std::string machine(const Measurements& measured);
 
 }  // namespace drumhead::bench

@@ -27,13 +27,13 @@ constexpr double kPressureJump = 0.4, kConformingJump = 0.1;
 // before: S1 kappa 1 .46, .33 without and .38, .26 with it, S2 kappa 10 .43, .35 and .41, .27; S2
 // kappa 1e4 on 400² takes 3 cycles instead of 10. Not where a mask of kappa is: S3 takes .91, 1.0
 // and .93 of the steps at 200², 400², 800² (means of six offsets), and as long.
+constexpr double kStiff = 30.0;
 // Beside conforming curves always twice before the restriction. What a first cycle leaves at kappa
 // 100, 200², then without it, once, twice and eight times, px: S2 .084, .078, .071, .051 (twice on
 // all cells .064), S4 .40, .33, .28, .20 (.26). Newton steps on the finest level and time, 128² and
 // 200², means of six offsets, instead of relaxing the list of special cells twice everywhere: S2
 // kappa 10 3.0 (4.0), .75, kappa 100 4.0 (5.0), .92; S4 kappa 10 4.0 (5.0), .78, 100 5.2 (6.2), .7,
 // 1e4 5.3 (8.5), .77; S1 1e4 14.7 (16.5), 1.
-constexpr double kStiff = 30.0;
 constexpr int kConformingBand = 2;
 // The power method sees the largest eigenvalue from below, on the coarser levels.
 constexpr int kPowerSteps = 8;
