@@ -118,6 +118,7 @@ class Newton {
              double norm_before) const;
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
   double precision() const;
+  bool lost_in_rounding() const;
 
   Hierarchy<T>& hierarchy_;
   Level<T>& level_;

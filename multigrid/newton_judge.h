@@ -89,6 +89,16 @@ class Judge {
     return full && !may_mend && step.dx_rms_px <= rounding && end(Status::stalled);
   }
 
+  /// Where no tolerance was asked for: true if the run ends with a shortened step, beside which
+  /// all equations are as close to zero as rounded states bring them, and the merit sees but noise.
+  bool ends_rounded(const NewtonStep& step, const FullMove& move) {
+    if (!automatic() || !areas_done() || step.residual > kStagnated) return false;
+    report_.steps.push_back(step);
+    set_error(1.0, move);
+    report_.rounded = report_.error_rms > wanted(0.0);
+    return end(Status::converged);
+  }
+
   /// Nodes have moved enough, but volume rows leave too much: the next step is for them (and curve
   /// rows) alone, without the momentum that drives the slow rest. Ends with the run or a step of 0.
   bool only_areas_lack() const { return only_areas_lack_; }

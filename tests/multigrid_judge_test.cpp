@@ -38,6 +38,25 @@ TEST(Judge, LargeFullMovesOfShortenedStepsEndNoRun) {
   for (int n = 0; n < 10; ++n) EXPECT_FALSE(ends_with_shortened(judge, {0.3, 0.9}));
 }
 
+TEST(Judge, AShortenedStepAmongRoundedStatesEndsARunWithItsFullMove) {
+  const NewtonStep step{.step = 0.01, .krylov = 1, .residual = 0.4, .dx_rms_px = 3e-3};
+  for (const double tolerance : {0.0, 1e-3}) {
+    NewtonOptions options;
+    options.share_of_change = 0.1;
+    options.tolerance_rms = tolerance;
+    NewtonReport report;
+    report.change_rms = 1.0;
+    Judge judge(options, report);
+    EXPECT_EQ(judge.ends_rounded(step, {0.3, 0.9}), tolerance == 0.0);
+    if (tolerance > 0.0) continue;
+    EXPECT_EQ(report.status, Status::converged);
+    EXPECT_TRUE(report.rounded);
+    EXPECT_EQ(report.error_rms, 0.3);
+    EXPECT_EQ(report.error_max, 0.9);
+    EXPECT_EQ(report.steps.size(), 1u);
+  }
+}
+
 TEST(Judge, StepsThatComeNoNearerStallWhereThatIsAskedFor) {
   for (const int most_idle : {0, 3}) {
     NewtonOptions options;
