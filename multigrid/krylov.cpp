@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <drumhead/kernels/cuts.h>
@@ -183,6 +184,10 @@ LinearReport solve_linear(Hierarchy<T>& hierarchy, int top, bool pressure, doubl
   if (options.band) cycle.relax_band();
   // Without the jump in the equations a cycle's own residual is of another system.
   const bool same = hierarchy.traits().jump == hierarchy.traits().jump_inside;
+  if (same && options.unmeasured) {
+    cycle.run(options.kind, true);
+    return {.cycles = 1, .residual = std::numeric_limits<double>::quiet_NaN()};
+  }
   if (same && cycles_suffice(hierarchy, top, start, options, cycle, report)) return report;
   if (!(report.residual < 1.0)) {  // nothing gained: start from zero
     if (same)

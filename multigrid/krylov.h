@@ -19,11 +19,13 @@ struct LinearOptions {
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
   bool band = false;  ///< Cycle::relax_band
+  /// One cycle, whose residual is not looked at; for gcr on rows with their jump alone.
+  bool unmeasured = false;
 };
 
 struct LinearReport {
   int cycles = 0;         ///< or iterations of MINRES
-  double residual = 1.0;  ///< relative to the right-hand side
+  double residual = 1.0;  ///< relative to the right-hand side; not a number: not measured
 };
 
 /// Solves the system of level `top` at its state (`pressure` false: the harmonic system, kappa = 0)

@@ -148,6 +148,9 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, b
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
       level.nodes() < kSmallNodes)
     linear.kind = CycleKind::v;
+  linear.unmeasured = !start && !options.exact &&
+                      (loose(hierarchy, options, shortened) ||
+                       (smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff));
   linear.band = level.conforming || (!start && averaged(hierarchy, options));
   if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.reduction = kReduction;
@@ -276,6 +279,7 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
     newton.tolerance_rms = options.tolerance_cells;
     // The moves of loosely solved steps say too little of pressures that are slow to settle.
     newton.linear.content = newton.linear.reduction = kAccurate;
+    newton.linear.unmeasured = false;
     newton.expected.clear();
     newton.lengthens = false;
   }

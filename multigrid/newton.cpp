@@ -295,7 +295,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   StepLength length;
   Turn<T> turn(level_, meter_);
   Corners<T> corners(level_, options.onset);
-  bool followed = false;
+  bool followed = false, trusted = true;
   const auto ended = [&](Status status) {
     report.status = status;
     return report;
@@ -310,10 +310,16 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const bool areas = judge.only_areas_lack();
     const double norm = areas ? drop_momentum() : norm_;
     accuracy.set(norm, linear_options);
+    // A step that leaves little of all equations needs no look at its linear system, which costs a
+    // product: .93 to .97 of the time, with the same steps.
+    const bool careful = linear_options.content < options.linear.content;
+    linear_options.unmeasured = options.linear.unmeasured && trusted && !careful && !areas;
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
     const double lists = kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d);
-    if (!std::isfinite(linear.residual + lists)) return ended(Status::not_finite);
+    const bool measured = !linear_options.unmeasured;
+    if (!std::isfinite((measured ? linear.residual : 0.0) + lists))
+      return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     Turned turned;
     if (options.lengthens && !areas) turned = turn.from_last_to(d);
@@ -322,6 +328,8 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     if (!moves_.finite) return ended(Status::not_finite);
     const FullMove full{moves_.rms, moves_.longest};
     const bool shortened = step.step < std::min(1.0, length.longest());
+    if (!measured) step.residual = norm_ / norm;
+    trusted = norm_ <= kSlow * norm;
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * full.rms;
     step.dx_max_px = step.step * moves_.longest;
@@ -335,7 +343,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const bool there = !corners.act() || (followed && corners.last());
     if (ends && there && !lower_floor())
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
-    length.note(full.rms, step.step, shortened, n > 0 && !(linear.residual <= kAccurate), cosine);
+    length.note(full.rms, step.step, shortened, n > 0 && !(step.residual <= kAccurate), cosine);
     followed = corners.act() && !shortened && (ends || corners.followed(norm_));
     if (followed) {
       corners.move();

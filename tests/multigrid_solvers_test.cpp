@@ -76,6 +76,34 @@ TEST_P(Solvers, SolveALinearSystemAsFarAsTheySay) {
   EXPECT_NEAR(system.norm(r) / start, report.residual, 1e-9);
 }
 
+TEST(Gcr, TakesTheSameCycleWhereItsResidualIsNotLookedAt) {
+  const auto solve = [](bool unmeasured) {
+    scenes::NewtonLevel<double> level(sponge(32, 1.0), 0.005, 1.0);
+    level.set_force();
+    const multigrid::LinearReport report = level.solve({.content = 1.0, .unmeasured = unmeasured});
+    EXPECT_EQ(report.cycles, 1);
+    EXPECT_EQ(std::isnan(report.residual), unmeasured);
+    multigrid::Vector<double> x = level.system().make_vector();
+    kernels::combine<double>(1.0, kernels::Unknowns<const double>(level.system().correction()), 0.0,
+                             x.fields.view());
+    return std::pair(level.system().norm(x), level.level().dq);
+  };
+  EXPECT_EQ(solve(true), solve(false));
+}
+
+// Gentle scenes: what Newton's method is told of a cycle is what its step left of the equations.
+TEST(Gcr, LeavesTheEquationsAsMuchAsReported) {
+  for (const auto method : {multigrid::CurveMethod::averaged, multigrid::CurveMethod::conforming}) {
+    const multigrid::Solution found = multigrid::solve(sponge(128, 1.0), {.curve_method = method});
+    EXPECT_EQ(found.report.status, Status::converged);
+    for (const multigrid::LevelReport& level : found.report.levels)
+      for (const multigrid::NewtonStep& step : level.newton) {
+        EXPECT_GT(step.residual, 0.0) << level.nx;
+        EXPECT_LT(step.residual, 0.9) << level.nx;
+      }
+  }
+}
+
 TEST_P(Solvers, AreFoundByTheirNames) {
   EXPECT_EQ(multigrid::solver_named(name(GetParam())), GetParam());
 }

@@ -123,7 +123,9 @@ struct NewtonStep {
       1.0;  ///< clamp of the pressure in the Hessian, in units of mu; infinity: exact Hessian
   double step = 1.0;      ///< accepted step length t
   int krylov = 0;         ///< cycles of the linear solver
-  double residual = 0.0;  ///< relative residual left by the linear solver
+  /// Relative residual left by the linear solver; where that is not looked at (one cycle, after a
+  /// step that left at most half of them), the norm of all equations after the step by that before.
+  double residual = 0.0;
   double dx_rms_px = 0.0, dx_max_px = 0.0;
   int inverted_cells = 0;  ///< after the step
 };
