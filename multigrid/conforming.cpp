@@ -205,9 +205,14 @@ template <class T>
 std::size_t ConformingLevel<T>::bytes() const {
   return rows.bytes() + cells.triangle.size() * sizeof(kernels::Triangle<T>) +
          cells.vertex.size() * sizeof(kernels::PartVertex<T>) +
-         to_coarse.pair.size() * sizeof(typename kernels::SpecialTransfer<T>::Pair) +
-         to_coarse.node.size() * sizeof(typename kernels::SpecialTransfer<T>::Node) +
          (4 * pressure.size() + shift.size()) * sizeof(T);
+}
+
+template <class T>
+std::size_t ConformingLevel<T>::transfer_bytes() const {
+  return to_coarse.pair.size() * sizeof(typename kernels::SpecialTransfer<T>::Pair) +
+         to_coarse.node.size() * sizeof(typename kernels::SpecialTransfer<T>::Node) +
+         placed.size() * sizeof(PlacedNode<T>);
 }
 
 template <class T>

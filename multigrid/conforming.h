@@ -17,12 +17,22 @@
 
 namespace drumhead::multigrid {
 
+/// An inner node (i, j) of a level, and the triangle of the special cell (I, J) of the next coarser
+/// one in which it rests: its vertices and the node's barycentric coordinates.
+template <class T>
+struct PlacedNode {
+  int i, j, I, J;
+  std::array<int, 3> code;
+  std::array<T, 3> weight;
+};
+
 template <class T>
 struct ConformingLevel {
   grid::ConformingCells geometry;
   kernels::SpecialCells<T> cells;
   kernels::SpecialRows<T> rows;
   kernels::SpecialTransfer<T> to_coarse;  ///< empty on the coarsest level
+  std::vector<PlacedNode<T>> placed;      ///< in special cells of the coarser one, by rows
   std::vector<T> pressure;                ///< state: P per part
   std::vector<T> shift;                   ///< state: Law::listed_shift, empty: none
   Regions regions;                        ///< whose mean pressures cycles set
@@ -39,11 +49,13 @@ struct ConformingLevel {
   /// No pressures, and held nodes, whose planes are these, at their targets.
   void clear(const kernels::Plane<T>& ux, const kernels::Plane<T>& uy);
   std::size_t bytes() const;
+  /// Of `to_coarse` and `placed`, which are made later.
+  std::size_t transfer_bytes() const;
 };
 
+/// Makes `to_coarse` and `placed` of `fine`.
 template <class T>
-kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
-                                             const grid::ConformingCells& coarse);
+void join_levels(const grid::ConformingCells& coarse, ConformingLevel<T>& fine);
 
 /// Lattice nodes that curves hold take their places.
 template <class T>

@@ -21,6 +21,7 @@ InTriangle find_triangle(const grid::ConformingCells& cells, int c, int j, grid:
   constexpr double kInside = 1e-6;  // in no other triangle then
   InTriangle found;
   for_parts(cells, c, [&](int p) {
+    if (found.least > kInside) return;
     for_triangles(cells, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
       if (found.least > kInside) return;
       std::array<double, 3> weight{};
@@ -71,9 +72,20 @@ void list_pairs(const grid::ConformingCells& fine, const grid::ConformingCells& 
 
 /// An inner fine node and the special coarse cell (I, J) that it rests in.
 struct FineNode {
-  int j, i, I, J;
+  int i, j, I, J;
   InTriangle place;
 };
+/// The place of node (i, j) in special coarse cell c, or beside it.
+InTriangle place_node(const grid::ConformingCells& fine, int i, int j,
+                      const grid::ConformingCells& coarse, int c, int I, int J) {
+  const int held = fine.find_node(i, j);
+  if (held >= 0) return find_triangle(coarse, c, J, 0.5 * fine.node[std::size_t(held)].rest);
+  const int corner = (i > 2 * I ? 1 : 0) + (j > 2 * J ? 2 : 0);
+  if (i % 2 == 0 && j % 2 == 0 && coarse.cell_corner[std::size_t(c)][std::size_t(corner)] < 0)
+    return {{corner, corner, corner}, {1.0, 0.0, 0.0}, 0.0};
+  return find_triangle(coarse, c, J, {0.5 * i, 0.5 * j});
+}
+
 /// Sorted by row, then column.
 std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
                                              const grid::ConformingCells& coarse) {
@@ -87,11 +99,8 @@ std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
            ++c) {
         const int I = coarse.cell_column[std::size_t(c)];
         for (int i = std::max(2 * I, 1); i <= std::min(2 * I + 2, fine.nx - 1); ++i) {
-          const int held = fine.find_node(i, j);
-          const grid::Point rest =
-              held >= 0 ? fine.node[std::size_t(held)].rest : grid::Point{double(i), double(j)};
           order.push_back({i, int(row.size())});
-          row.push_back({j, i, I, J, find_triangle(coarse, c, J, 0.5 * rest)});
+          row.push_back({i, j, I, J, place_node(fine, i, j, coarse, c, I, J)});
         }
       }
     std::ranges::sort(order);
@@ -120,14 +129,14 @@ void list_curve_nodes(const FineNode& node, const grid::ConformingCells& coarse,
 }
 
 template <class T>
-void list_nodes(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
-                kernels::SpecialTransfer<T>& transfer) {
+void list_nodes(const std::vector<FineNode>& nodes, const grid::ConformingCells& fine,
+                const grid::ConformingCells& coarse, kernels::SpecialTransfer<T>& transfer) {
   struct Row {
     int j;
   };
   std::vector<FineNode> listed;
   std::vector<Row> of_node;
-  for (const FineNode& node : nodes_in_special_cells(fine, coarse)) {
+  for (const FineNode& node : nodes) {
     const int held = fine.find_node(node.i, node.j);
     if (held >= 0 && std::isinf(fine.node[std::size_t(held)].stiffness)) continue;
     list_curve_nodes(node, coarse, transfer);
@@ -216,13 +225,17 @@ void list_curves(const grid::ConformingCells& fine, const grid::ConformingCells&
 }  // namespace
 
 template <class T>
-kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells& fine,
-                                             const grid::ConformingCells& coarse) {
-  kernels::SpecialTransfer<T> transfer;
-  list_pairs(fine, coarse, transfer);
-  list_nodes(fine, coarse, transfer);
-  list_curves(fine, coarse, transfer);
-  return transfer;
+void join_levels(const grid::ConformingCells& coarse, ConformingLevel<T>& level) {
+  const grid::ConformingCells& fine = level.geometry;
+  const std::vector<FineNode> nodes = nodes_in_special_cells(fine, coarse);
+  for (const FineNode& node : nodes) {
+    const auto& [code, weight, least] = node.place;
+    level.placed.push_back(
+        {node.i, node.j, node.I, node.J, code, {T(weight[0]), T(weight[1]), T(weight[2])}});
+  }
+  list_pairs(fine, coarse, level.to_coarse);
+  list_nodes(nodes, fine, coarse, level.to_coarse);
+  list_curves(fine, coarse, level.to_coarse);
 }
 
 template <class T>
@@ -324,14 +337,12 @@ void prolong_special_nodes(const ConformingLevel<T>& coarse,
                            const kernels::Plane<const T>& coarse_x,
                            const kernels::Plane<const T>& coarse_y, const ConformingLevel<T>& fine,
                            const kernels::Plane<T>& x, const kernels::Plane<T>& y) {
-  const grid::ConformingCells& cells = coarse.geometry;
-  for (const FineNode& node : nodes_in_special_cells(fine.geometry, cells)) {
+  for (const PlacedNode<T>& node : fine.placed) {
     double ux = 0.0, uy = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const grid::Point u =
-          displacement(coarse, coarse_x, coarse_y, node.I, node.J, node.place.code[a]);
-      ux += node.place.weight[a] * u.x;
-      uy += node.place.weight[a] * u.y;
+      const grid::Point u = displacement(coarse, coarse_x, coarse_y, node.I, node.J, node.code[a]);
+      ux += double(node.weight[a]) * u.x;
+      uy += double(node.weight[a]) * u.y;
     }
     x.at(node.i, node.j) = T(ux);
     y.at(node.i, node.j) = T(uy);
@@ -339,8 +350,7 @@ void prolong_special_nodes(const ConformingLevel<T>& coarse,
 }
 
 #define DRUMHEAD_INSTANTIATE(T)                                                                  \
-  template kernels::SpecialTransfer<T> special_transfer(const grid::ConformingCells&,            \
-                                                        const grid::ConformingCells&);           \
+  template void join_levels(const grid::ConformingCells&, ConformingLevel<T>&);                  \
   template void restrict_parts(const ConformingLevel<T>&, const kernels::Plane<const T>&, T,     \
                                ConformingLevel<T>&);                                             \
   template void prolong_parts(const ConformingLevel<T>&, const kernels::Plane<const T>&,         \

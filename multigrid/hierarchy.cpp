@@ -265,9 +265,10 @@ template <class T>
 void Hierarchy<T>::conform(std::vector<grid::ConformingCells> cells, grid::MemoryMeter& meter) {
   for (int l = 0; l < size(); ++l) {
     (*this)[l].conform(std::move(cells[std::size_t(l)]), meter);
-    if (l > 0)
-      (*this)[l - 1].conforming->to_coarse =
-          special_transfer<T>((*this)[l - 1].conforming->geometry, (*this)[l].conforming->geometry);
+    if (l == 0) continue;
+    ConformingLevel<T>& fine = *(*this)[l - 1].conforming;
+    join_levels<T>((*this)[l].conforming->geometry, fine);
+    meter.add(fine.transfer_bytes());
   }
 }
 

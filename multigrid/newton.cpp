@@ -261,6 +261,14 @@ LinearReport Newton<T>::solve_step(double norm, const LinearOptions& options,
   return linear;
 }
 
+/// Of d what take_step does not look at, and the residual.
+template <class T>
+bool Newton<T>::finite(const LinearReport& linear, bool unmeasured) const {
+  const kernels::Unknowns<const T> d = level_.d.view();
+  const double lists = kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d);
+  return std::isfinite(lists + (unmeasured ? 0.0 : linear.residual));
+}
+
 /// theta of the next step; it does not grow while `corners` act.
 template <class T>
 void Newton<T>::adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
@@ -295,7 +303,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
   StepLength length;
   Turn<T> turn(level_, meter_);
   Corners<T> corners(level_, options.onset);
-  bool followed = false, trusted = true;
+  bool followed = false;
   const auto ended = [&](Status status) {
     report.status = status;
     return report;
@@ -309,17 +317,10 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     set_clamp(clamp.theta);
     const bool areas = judge.only_areas_lack();
     const double norm = areas ? drop_momentum() : norm_;
-    accuracy.set(norm, linear_options);
-    // A step that leaves little of all equations needs no look at its linear system, which costs a
-    // product: .93 to .97 of the time, with the same steps.
-    const bool careful = linear_options.content < options.linear.content;
-    linear_options.unmeasured = options.linear.unmeasured && trusted && !careful && !areas;
+    accuracy.set(norm, !areas, linear_options);
     const LinearReport linear = solve_step(norm, linear_options, clamp);
     const auto d = level_.d.view();
-    const double lists = kernels::dot_listed<T>(d, d) + kernels::dot_curve<T>(d, d);
-    const bool measured = !linear_options.unmeasured;
-    if (!std::isfinite((measured ? linear.residual : 0.0) + lists))
-      return ended(Status::not_finite);
+    if (!finite(linear, linear_options.unmeasured)) return ended(Status::not_finite);
     NewtonStep step{.theta = clamp.theta, .krylov = linear.cycles, .residual = linear.residual};
     Turned turned;
     if (options.lengthens && !areas) turned = turn.from_last_to(d);
@@ -328,8 +329,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     if (!moves_.finite) return ended(Status::not_finite);
     const FullMove full{moves_.rms, moves_.longest};
     const bool shortened = step.step < std::min(1.0, length.longest());
-    if (!measured) step.residual = norm_ / norm;
-    trusted = norm_ <= kSlow * norm;
+    if (linear_options.unmeasured && norm > 0.0) step.residual = norm_ / norm;
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * full.rms;
     step.dx_max_px = step.step * moves_.longest;

@@ -117,6 +117,7 @@ class Newton {
   void adapt(ClampSchedule& clamp, const NewtonStep& step, bool shortened, bool corners,
              double norm_before) const;
   LinearReport solve_step(double norm, const LinearOptions& options, ClampSchedule& clamp);
+  bool finite(const LinearReport& linear, bool unmeasured) const;
   double precision() const;
   bool lost_in_rounding() const;
 
