@@ -212,7 +212,7 @@ template <class T>
 std::size_t ConformingLevel<T>::transfer_bytes() const {
   return to_coarse.pair.size() * sizeof(typename kernels::SpecialTransfer<T>::Pair) +
          to_coarse.node.size() * sizeof(typename kernels::SpecialTransfer<T>::Node) +
-         placed.size() * sizeof(PlacedNode<T>);
+         placed.size() * sizeof(PlacedNode);
 }
 
 template <class T>

@@ -229,9 +229,7 @@ void join_levels(const grid::ConformingCells& coarse, ConformingLevel<T>& level)
   const grid::ConformingCells& fine = level.geometry;
   const std::vector<FineNode> nodes = nodes_in_special_cells(fine, coarse);
   for (const FineNode& node : nodes) {
-    const auto& [code, weight, least] = node.place;
-    level.placed.push_back(
-        {node.i, node.j, node.I, node.J, code, {T(weight[0]), T(weight[1]), T(weight[2])}});
+    level.placed.push_back({node.i, node.j, node.I, node.J, node.place.code, node.place.weight});
   }
   list_pairs(fine, coarse, level.to_coarse);
   list_nodes(nodes, fine, coarse, level.to_coarse);
@@ -337,12 +335,12 @@ void prolong_special_nodes(const ConformingLevel<T>& coarse,
                            const kernels::Plane<const T>& coarse_x,
                            const kernels::Plane<const T>& coarse_y, const ConformingLevel<T>& fine,
                            const kernels::Plane<T>& x, const kernels::Plane<T>& y) {
-  for (const PlacedNode<T>& node : fine.placed) {
+  for (const PlacedNode& node : fine.placed) {
     double ux = 0.0, uy = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const grid::Point u = displacement(coarse, coarse_x, coarse_y, node.I, node.J, node.code[a]);
-      ux += double(node.weight[a]) * u.x;
-      uy += double(node.weight[a]) * u.y;
+      ux += node.weight[a] * u.x;
+      uy += node.weight[a] * u.y;
     }
     x.at(node.i, node.j) = T(ux);
     y.at(node.i, node.j) = T(uy);
