@@ -202,6 +202,8 @@ void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch) {
   if (isotropic(level.membrane.law.model))
     return relax_isotropic(level, stages.from_zero, coarse_d, coarse_f);
+  if (stages.band != 0 && level.band == nullptr)
+    refuse("band", stages.band, "0 where the level has no LevelSystem::band");
   const int ny = level.d.x.rows - 1;
   const StageList list = list_stages(stages, coarse_d != nullptr, level.membrane.special != nullptr,
                                      bool(level.d.p), level.cuts.count > 0, coarse_f != nullptr);

@@ -223,9 +223,15 @@ TYPED_TEST(KernelsRelax, AnotherNumberOfBandsIsRefused) {
   using T = TypeParam;
   RandomLevel<T> level({.nx = 4, .ny = 4});
   kernels::RowScratch<T> scratch(4, 1);
-  for (const int band : {-1, 3})
-    EXPECT_THROW(kernels::relax<T>(level.system(), {.band = band}, nullptr, nullptr, scratch),
+  auto refuses = [&](const kernels::LevelSystem<T>& system, int band) {
+    EXPECT_THROW(kernels::relax<T>(system, {.band = band}, nullptr, nullptr, scratch),
                  std::invalid_argument);
+  };
+  kernels::LevelSystem<T> system = level.system();
+  refuses(system, 1);  // it has none
+  const kernels::Band band;
+  system.band = &band;
+  for (const int number : {-1, 3}) refuses(system, number);
 }
 
 // The solution of the system is what no relaxation changes: the right-hand side is made from d.

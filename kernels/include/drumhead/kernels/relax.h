@@ -96,7 +96,8 @@ struct RelaxStages {
   VolumeSweeps volume = VolumeSweeps::twice;
   /// Relaxations (at most 2) of the band beside the curves (LevelSystem::band) at the end, whatever
   /// `sweeps` says: its nodes, its volume rows, as often as all are swept, and all curve rows; with
-  /// special cells also all near nodes and parts, and volume rows in reverse alone.
+  /// special cells also all near nodes and parts, and volume rows in reverse alone. 0 where the
+  /// level has no band.
   int band = 0;
 };
 
