@@ -75,6 +75,7 @@ struct FineNode {
   int i, j, I, J;
   InTriangle place;
 };
+
 /// The place of node (i, j) in special coarse cell c, or beside it.
 InTriangle place_node(const grid::ConformingCells& fine, int i, int j,
                       const grid::ConformingCells& coarse, int c, int I, int J) {
@@ -228,9 +229,8 @@ template <class T>
 void join_levels(const grid::ConformingCells& coarse, ConformingLevel<T>& level) {
   const grid::ConformingCells& fine = level.geometry;
   const std::vector<FineNode> nodes = nodes_in_special_cells(fine, coarse);
-  for (const FineNode& node : nodes) {
+  for (const FineNode& node : nodes)
     level.placed.push_back({node.i, node.j, node.I, node.J, node.place.code, node.place.weight});
-  }
   list_pairs(fine, coarse, level.to_coarse);
   list_nodes(nodes, fine, coarse, level.to_coarse);
   list_curves(fine, coarse, level.to_coarse);

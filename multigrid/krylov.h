@@ -19,7 +19,7 @@ struct LinearOptions {
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
   CycleKind kind = CycleKind::f;
   bool band = false;  ///< Cycle::relax_band
-  /// One cycle, whose residual is not looked at; for gcr on rows with their jump alone.
+  /// gcr on rows with their jump: one cycle, whose residual is not looked at.
   bool unmeasured = false;
 };
 

@@ -148,7 +148,7 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, b
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
       level.nodes() < kSmallNodes)
     linear.kind = CycleKind::v;
-  linear.unmeasured = !start && !options.exact &&
+  linear.unmeasured = !start && !options.exact && options.solver == Solver::gcr &&
                       (loose(hierarchy, options, shortened) ||
                        (smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff));
   linear.band = level.conforming || (!start && averaged(hierarchy, options));

@@ -91,6 +91,15 @@ TEST(Gcr, TakesTheSameCycleWhereItsResidualIsNotLookedAt) {
   EXPECT_EQ(solve(true), solve(false));
 }
 
+// The others look at theirs: a step of minres ends with what was asked for.
+TEST(Minres, ReportsItsOwnResidual) {
+  const multigrid::Solution found = multigrid::solve(
+      sponge(64, 1.0),
+      {.solver = Solver::minres, .curve_method = multigrid::CurveMethod::averaged});
+  for (const multigrid::NewtonStep& step : found.report.levels.back().newton)
+    EXPECT_LE(step.residual, 0.3);
+}
+
 // Gentle scenes: what Newton's method is told of a cycle is what its step left of the equations.
 TEST(Gcr, LeavesTheEquationsAsMuchAsReported) {
   for (const auto method : {multigrid::CurveMethod::averaged, multigrid::CurveMethod::conforming}) {
