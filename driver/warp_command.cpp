@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "warp_command.h"
 
+#include <drumhead/kernels/isa.h>
 #include <drumhead/multigrid/warp.h>
 #include <algorithm>
 #include <map>
@@ -195,6 +196,8 @@ int run_warp(Options options) {
   Stopwatch watch, whole;
   Seconds seconds;
   Progress progress(options.quiet);
+  if (const std::string_view error = kernels::forced_isa_error(); !error.empty())
+    progress.warn(std::string(error));
   remove_temporaries_on_signals();
   check_files(options);
   Outputs outputs(options);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 
 #include "driver_scratch.h"
 #include "image.h"
@@ -65,6 +66,17 @@ TEST_F(DriverCommand, WarnsOfADrawingBeforeItRefusesIt) {
   const auto error = result.err.find("has no target");
   EXPECT_LT(warning, error) << result.err;
   EXPECT_NE(error, std::string::npos) << result.err;
+}
+
+TEST_F(DriverCommand, WarnsOfAnInstructionSetThatIsNone) {
+  setenv("DRUMHEAD_ISA", "mmx", 1);
+  const RunResult result =
+      run_drumhead(scratch, {"warp", "photo.png", "curves.svg", "-o", "out.png", "--quiet"});
+  unsetenv("DRUMHEAD_ISA");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(result.err.starts_with(
+      "drumhead: warning: DRUMHEAD_ISA=mmx: not one of scalar, sse2, avx2, avx512; using "))
+      << result.err;
 }
 
 TEST_F(DriverCommand, RefusesHalfFloatMapsAndSaysWhy) {
