@@ -196,7 +196,8 @@ void Newton<T>::raise_floor() {
     law.eps = T(kFirstFloor);
 }
 
-/// neohookean: true if the law had to be brought closer to the logarithm than it was for the state.
+/// neohookean: true if the law had to be brought closer to the logarithm than it was for the state,
+/// which is no help to a run that stalled (ML, kappa 30: an energy of 3e16 instead of 4e3).
 template <class T>
 bool Newton<T>::lower_floor() {
   kernels::Law<T>& law = level_.solid.law;
@@ -341,7 +342,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     const bool ends = (shortened && lost_in_rounding() && judge.ends_rounded(step, full)) ||
                       judge.ends_with(step, full, shortened, precision(), gap, cosine);
     const bool there = !corners.act() || (followed && corners.last());
-    if (ends && there && !lower_floor())
+    if (ends && there && (report.status == Status::stalled || !lower_floor()))
       return corners.act() && !corners.unfolded() ? ended(Status::stalled) : report;
     length.note(full.rms, step.step, shortened, n > 0 && !(step.residual <= kAccurate), cosine);
     followed = corners.act() && !shortened && (ends || corners.followed(norm_));

@@ -160,6 +160,17 @@ TEST(Membranes, ASceneThatMustFoldEndsWithASentenceOnIt) {
       solution.report.notes, [&](const std::string& note) { return note.starts_with(wanted); }));
 }
 
+/// It went on with the logarithm's floor lowered, to the limit of steps that moved nothing, an
+/// energy of 3e16 and an error that was said to be 0.
+TEST(Membranes, ANeoHookeanRunThatStallsEndsAndSaysSo) {
+  const multigrid::Solution solution =
+      solved({"", scenes::many_discs(), Model::neohookean, 30.0}, 64, 0.0);
+  EXPECT_EQ(solution.report.status, multigrid::Status::stalled)
+      << multigrid::name(solution.report.status);
+  EXPECT_LT(solution.report.energy.total, 1e5);
+  EXPECT_GT(solution.report.algebraic_rms_px, 0.0);
+}
+
 TEST(Membranes, CollapseOfStVenantKirchhoffIsToldAsWhatItIs) {
   const multigrid::Solution solution = solved({"", s4, Model::stvk}, 48, 0.0);
   ASSERT_GT(solution.report.folds.folded_cells, 0);
