@@ -196,11 +196,10 @@ bool continue_iteration(Hierarchy<T>& hierarchy, const grid::CutCells& cuts, con
                              ? options.tolerance_cells
                              : kShare * before.discretisation_rms_px / cell_px;
   ClampSchedule clamp;
-  const kernels::Law<T> law = level.solid.law;
   const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, 0, 0);
   NewtonReport done = Newton<T>(hierarchy, 0, meter).run(newton, clamp, progress);
   if (done.status != Status::converged && done.status != Status::cancelled) {
-    level.clear(law);
+    hierarchy.clear();  // coarser levels, too: isotropic ones have no forces while averaged
     return false;
   }
   report.status = done.status;

@@ -116,6 +116,29 @@ TEST_P(RestartRelease, AFoldedSceneReturnsToRest) {
 INSTANTIATE_TEST_SUITE_P(Methods, RestartRelease,
                          ::testing::Values(CurveMethod::averaged, CurveMethod::conforming));
 
+/// What the attempt left on coarser levels changed the solution, and crashed isotropic membranes.
+class RestartInVain : public ::testing::TestWithParam<std::tuple<kernels::Model, CurveMethod>> {};
+
+TEST_P(RestartInVain, IsSolvedFromTheBeginningAsWithoutAStart) {
+  const auto [model, method] = GetParam();
+  WarpProblem problem = scenes::problem(scenes::roundabout(45.0, scenes::kStudyOffset), 128, 10.0);
+  problem.material.model = model;
+  const Solution fresh = solve(problem, {.curve_method = method});
+  Solution far = fresh;
+  for (double& u : far.u_px) u *= -1.0;
+  far.report.discretisation_rms_px = 1e-9;
+  const Solution again = solve(problem, {.curve_method = method, .start = &far});
+  EXPECT_GT(again.report.levels.size(), 1u);
+  EXPECT_EQ(again.u_px, fresh.u_px);
+  EXPECT_EQ(again.v_px, fresh.v_px);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Membranes, RestartInVain,
+    ::testing::Combine(::testing::Values(kernels::Model::crpm, kernels::Model::arap,
+                                         kernels::Model::neohookean, kernels::Model::stvk),
+                       ::testing::Values(CurveMethod::averaged, CurveMethod::conforming)));
+
 TEST(RestartRefusal, AStartOnAnotherLatticeIsNamed) {
   const scenes::Scene scene = scenes::shift(scenes::kStudyOffset);
   const Solution other = solve(scenes::problem(scene, 32, 1.0));
