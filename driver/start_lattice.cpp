@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -32,7 +33,8 @@ multigrid::Solution read_start(const std::filesystem::path& file, const grid::La
     start.v_px.push_back(double(value[v]));
   }
   start.report.discretisation_rms_px =
-      std::atof(std::string(image.spec.get_string_attribute(kLatticeError)).c_str());
+      std::atof(std::string(image.spec.get_string_attribute(kLatticeError, "nan")).c_str());
+  start.report.discretisation_max_px = std::numeric_limits<double>::quiet_NaN();
   const auto method =
       multigrid::curve_method_named(std::string(image.spec.get_string_attribute(kLatticeCurves)));
   start.report.curve_method = method.value_or(multigrid::CurveMethod::averaged);

@@ -74,8 +74,11 @@ TEST_P(DriverStartByAllWays, FollowsADraggedCurveOnTheFinestLatticeAlone) {
 
 // The tolerance is then a tenth of the error that the file's header tells.
 TEST_P(DriverStartByAllWays, NeedsNoTolerance) {
-  EXPECT_EQ(run(10.5, {"--start", "ten.exr"}).exit_code, 0);
+  EXPECT_EQ(run(10.5, {"--start", "ten.exr", "--page", "page.html"}).exit_code, 0);
   EXPECT_EQ(levels(), 1u);
+  const Json error = Json::parse(read_text(scratch / "r.json"))["error_px"];
+  EXPECT_GT(error["discretisation_rms"], 0.0);
+  EXPECT_TRUE(error["discretisation_max"].is_null()) << "the file does not tell it";
 }
 
 TEST_F(DriverStart, RefusesWhatIsNoLatticeOfTheScene) {
