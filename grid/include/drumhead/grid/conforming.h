@@ -143,7 +143,8 @@ struct ConformingCells {
 /// Builds the cells that conform to the sources of `curves`. Linear in crossings and segments, and
 /// independent of the number of cells. Pairs with equally many segments are taken as they are (see
 /// `matched`). Throws std::invalid_argument naming curve, place and bound for a source that leaves
-/// the lattice, and for a weight that is not positive.
+/// the lattice, for a weight that is not positive, for a snap outside (0, 0.25], and as `matched`
+/// does.
 ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
                         const ConformOptions& options = {});
 
@@ -158,6 +159,7 @@ std::vector<ConformingCells> conform_levels(const std::vector<CurvePair>& curves
 /// same sources and weights, cells stay and only what their nodes are asked for is found anew.
 class CurveConformer {
  public:
+  /// Throws std::invalid_argument for a snap outside (0, 0.25].
   CurveConformer(const Lattice& lattice, int levels, const ConformOptions& options = {});
   ~CurveConformer();
   /// The cells of all levels, as `conform_levels` has them, which throws likewise; none where those

@@ -33,7 +33,8 @@ struct CutCells {
 /// cap. Curve points within 1e-9 cells of a grid line are taken to lie on it (and belong to the
 /// cell of larger index), stays in a cell shorter than 1e-3 cells are dropped, and so are rows of
 /// which the fixed boundary holds all but 2 %. Cost: linear in crossings and segments. Throws
-/// std::invalid_argument naming curve, place and bound for a source that leaves the lattice.
+/// std::invalid_argument naming curve, place and bound for a source that leaves the lattice, for a
+/// weight that is not positive, and as `matched` does.
 CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, double most_weight);
 
 /// Cuts one scene after another by one lattice: only curves that the scene before did not have are

@@ -5,8 +5,9 @@
 
 namespace drumhead::kernels {
 
-/// block := inverses of the 2×2 blocks (xx, xy, yy) of the Hessian's diagonal at the interior
-/// nodes.
+/// block := (B + 1e-4 mu)⁻¹ with B the 2×2 blocks (xx, xy, yy) of the Hessian's diagonal at the
+/// interior nodes, mu the membrane's constant: nodes that nothing holds have an inverse, too. 0 at
+/// nodes that a hard curve holds.
 template <class T>
 void inverse_blocks(const Membrane<T>& membrane, const Plane<T> (&block)[3]);
 

@@ -10,10 +10,11 @@
 //   [K + P_H G   Bᵀ         −Wᵀ] [du]   [f.x, f.y]
 //   [B           −A/kappa   0  ] [dP] = [f.p     ]
 //   [−W          0          −M ] [dq]   [f of q  ]
-// For the isotropic membranes (model.h) these functions go to the kernels of isotropic.h: no P
-// exists, elastic and volume are the energies with mu and with kappa, volume_merit is volume.
-// Curve terms are in cuts.h; the functions here do the elastic part of every row. Nodes on the
-// boundary are fixed: they are read (as 0 in a correction) and never written.
+// For the isotropic membranes (model.h) these functions, but for linear_residual, go to the kernels
+// of isotropic.h: no P exists, elastic and volume are the energies with mu and with kappa,
+// volume_merit is volume. Curve terms are in cuts.h; the functions here do the elastic part of
+// every row. Nodes on the boundary are fixed: they are read (as 0 in a correction) and never
+// written.
 #include <drumhead/kernels/views.h>
 
 namespace drumhead::kernels {
@@ -24,7 +25,7 @@ template <class T>
 void apply_hessian(const Membrane<T>& membrane, const Unknowns<const T>& d, const Unknowns<T>& out);
 
 /// r = f − H d without the curve forces (which an f that carries Wᵀ dq already has; see cuts.h). r
-/// may alias f where the membrane has no special cells.
+/// may alias f where the membrane has no special cells. Not for isotropic membranes.
 template <class T>
 void linear_residual(const Membrane<T>& membrane, const Unknowns<const T>& f,
                      const Unknowns<const T>& d, const Unknowns<T>& r);

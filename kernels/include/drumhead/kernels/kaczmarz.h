@@ -57,7 +57,7 @@ void balance_rows(const Membrane<T>& membrane, const Cuts<T>& cuts, const Plane<
                   T* beta2);
 
 /// Damped Jacobi: d += omega S² L e with e = residual/|row|² of all rows at the d given. e: fields
-/// like d, 0 on the fixed boundary, and eq, three values a cut, are overwritten.
+/// like d, 0 on the fixed boundary, and eq, four values a cut, are overwritten.
 template <class T>
 void damped_kaczmarz(const KaczmarzSystem<T>& system, const Unknowns<T>& e, T* eq);
 

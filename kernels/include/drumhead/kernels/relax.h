@@ -12,6 +12,8 @@
 // Isotropic membranes (model.h), whose Hessian products are not done node by node: nodes by two
 // steps of Chebyshev iteration with the 2×2 blocks D of the Hessian's diagonal, then curve rows in
 // the inner product of D, forwards and in reverse.
+#include <cassert>
+#include <cstddef>
 #include <vector>
 
 #include <drumhead/kernels/band.h>
@@ -43,6 +45,8 @@ struct LevelSystem {
 template <class T>
 class RowScratch {
  public:
+  /// For lattices of up to `columns` columns of nodes, nx + 1, while thread_limit() is at most
+  /// `threads` (1 will do on lattices that are never shared out, see kernels/parallel.h).
   RowScratch(int columns, int threads);
   struct Rows {
     T* x[4];
@@ -53,7 +57,10 @@ class RowScratch {
     int held[4];        ///< which residual row x[r], y[r] hold, −1: none
     int next;           ///< the residual row that follows the last one made, −1: none
   };
-  Rows& rows(int thread) { return rows_[std::size_t(thread)]; }
+  Rows& rows(int thread) {
+    assert(std::size_t(thread) < rows_.size());
+    return rows_[std::size_t(thread)];
+  }
   std::ptrdiff_t odd() const { return odd_; }
   void forget();
   /// One value per part of special cells.
@@ -103,7 +110,8 @@ struct RelaxStages {
 
 /// One relaxation of `level`. `coarse_d`: if not null, its bilinear (x, y) and constant (p)
 /// prolongation is added first. `coarse_f`: if not null, receives the adjoint restriction of the
-/// elastic residual f − H d afterwards (curve rows: the caller's).
+/// elastic residual f − H d afterwards (curve rows: the caller's). Isotropic membranes take of
+/// `stages` from_zero alone. Throws std::invalid_argument for a `band` that is none.
 template <class T>
 void relax(const LevelSystem<T>& level, const RelaxStages& stages,
            const Unknowns<const T>* coarse_d, const Unknowns<T>* coarse_f, RowScratch<T>& scratch);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The façade: a picture's lattice, its material and its curve pairs go in, node displacements and a
-// report come out. Minimises Eq. 5 of Setaluri et al. 2014 by Newton's method in nested iteration
-// over a matrix-free multigrid solver. All lengths in picture pixels; a caller who has no picture
-// may take any unit.
+// report come out. Minimises the energy of the membrane (kernels/model.h; crpm: Eq. 5 of Setaluri
+// et al. 2014, in cells along conforming curves that of grid/conforming.h) by Newton's method in
+// nested iteration over a matrix-free multigrid solver. All lengths in picture pixels; a caller who
+// has no picture may take any unit.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -121,8 +122,8 @@ const char* name(Status status);
 struct NewtonStep {
   double theta =
       1.0;  ///< clamp of the pressure in the Hessian, in units of mu; infinity: exact Hessian
-  double step = 1.0;      ///< accepted step length t
-  int krylov = 0;         ///< cycles of the linear solver
+  double step = 1.0;  ///< accepted step length t
+  int krylov = 0;     ///< cycles of the linear solver, or iterations of MINRES
   /// Relative residual left by the linear solver; where that is not looked at (one cycle, after a
   /// step that left at most half of them), the norm of all equations after the step by that before.
   double residual = 0.0;
@@ -140,6 +141,7 @@ struct CurveReport {
   grid::Point worst_px;                       ///< where on the source the gap is largest
 };
 struct FoldReport {
+  // Of split cells: the mean of J and the least of its triangles.
   int inverted_cells = 0;  ///< J* < 0 at the centre
   int folded_cells = 0;    ///< J < 0 at any corner
   double min_J = 1.0, min_corner_J = 1.0;
@@ -182,8 +184,8 @@ struct SolveReport {
   std::vector<std::string> notes;  ///< what the solver changed or could not do, in words
 };
 
-/// q of Eq. 5: the force, in units of mu·cell_px, that the curves exert in cell (i, j) which they
-/// cut.
+/// q of Eq. 5, of averaged curves: the force, in units of mu·cell_px, that they exert in cell (i,
+/// j) which they cut.
 struct CurveForce {
   int i = 0, j = 0;
   grid::Point q;
@@ -194,9 +196,9 @@ struct CurveForce {
 struct Solution {
   grid::Lattice lattice;
   std::vector<double> u_px, v_px;
-  std::vector<double> pressure;  ///< P in units of mu; empty where no pressures exist
-  SplitCells split;              ///< where the lattice conforms to the curves; else empty
-  std::vector<CurveForce> forces;
+  std::vector<double> pressure;    ///< P in units of mu; empty where no pressures exist
+  SplitCells split;                ///< where the lattice conforms to the curves; else empty
+  std::vector<CurveForce> forces;  ///< empty where the lattice conforms to the curves
   SolveReport report;
 };
 
