@@ -174,6 +174,22 @@ TYPED_TEST(MembraneBits, HaveTheSameBitsForEveryNumberOfThreads) {
   }
 }
 
+// A coarse row takes two fine ones: on the lattice above that is work for one thread.
+TYPED_TEST(MembraneBits, CoarseTangentsHaveTheSameBitsForEveryNumberOfThreads) {
+  using T = TypeParam;
+  constexpr int nx = 700, ny = 701;
+  Sample<T> sample(Model::arap, nx, ny, 1.0, 17);
+  sample.deform(turned(20), 0.1);
+  const auto tangents = [&](int threads) {
+    const kernels::ThreadLimit limit(threads);
+    OwnedPlane<T> tangent((nx + 1) / 2, 10 * ((ny + 1) / 2));
+    kernels::average_tangents<T>(sample.membrane, tangent.view());
+    return tangent.values();
+  };
+  const std::vector<T> expected = tangents(1);
+  for (const int threads : {2, 3}) EXPECT_TRUE(same_bits(tangents(threads), expected)) << threads;
+}
+
 TEST(Arap, CornerPressuresReachTheFixedPointOfThePenaltyAskedFor) {
   Sample<double> sample(Model::arap, 3, 3, 1.0, 19);
   Matrix2d F;

@@ -141,6 +141,7 @@ TEST(KernelsFolds, HaveTheBitsOfOneThread) {
   for (std::size_t j = 0; j < rows[0].size(); ++j) {
     ASSERT_EQ(rows[0][j].least_J, rows[1][j].least_J);
     ASSERT_EQ(rows[0][j].least_corner_J, rows[1][j].least_corner_J);
+    ASSERT_EQ(rows[0][j].inverted, rows[1][j].inverted);
     ASSERT_EQ(rows[0][j].folded, rows[1][j].folded);
   }
 }

@@ -210,7 +210,7 @@ TYPED_TEST(KernelsRelax, TheBandBesideCurvesEqualsItsPartOfTheAssembledRelaxatio
         kernels::LevelSystem<T> system = level.system();
         const kernels::Band spans = band.of_kernels(system.cuts.row_begin, spec.nx, spec.ny);
         system.band = &spans;
-        kernels::RowScratch<T> scratch(spec.nx, 1);
+        kernels::RowScratch<T> scratch(spec.nx + 1, 1);
         kernels::relax<T>(system, {.sweeps = kernels::Sweeps::none, .band = 1}, nullptr, nullptr,
                           scratch);
         const VectorXd found = oracle.template packed<T>(level.d.view(), level.dq);
@@ -222,7 +222,7 @@ TYPED_TEST(KernelsRelax, TheBandBesideCurvesEqualsItsPartOfTheAssembledRelaxatio
 TYPED_TEST(KernelsRelax, AnotherNumberOfBandsIsRefused) {
   using T = TypeParam;
   RandomLevel<T> level({.nx = 4, .ny = 4});
-  kernels::RowScratch<T> scratch(4, 1);
+  kernels::RowScratch<T> scratch(5, 1);
   auto refuses = [&](const kernels::LevelSystem<T>& system, int band) {
     EXPECT_THROW(kernels::relax<T>(system, {.band = band}, nullptr, nullptr, scratch),
                  std::invalid_argument);
