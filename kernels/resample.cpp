@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -117,8 +116,6 @@ void Resampler::render(const ImageTarget& out) const {
                   filter_tile(state_->pyramid, state_->bounds, tile, first, out.row_stride);
                 });
 }
-
-std::size_t Resampler::bytes() const { return state_->tree.bytes() + state_->pyramid.bytes(); }
 
 void backward_map(const LatticeMapView& map, const BackwardMapTarget& out, int threads) {
   check(map);

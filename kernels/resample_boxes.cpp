@@ -66,10 +66,4 @@ BoxTree::BoxTree(const LatticeMapView& map) {
   }
 }
 
-std::size_t BoxTree::bytes() const {
-  std::size_t sum = 0;
-  for (const Level& level : levels_) sum += level.boxes.size() * sizeof(Box);
-  return sum;
-}
-
 }  // namespace drumhead::kernels

@@ -50,8 +50,6 @@ class BoxTree {
     visit_below(levels_.size() - 1, 0, 0, query, visit);
   }
 
-  std::size_t bytes() const;
-
  private:
   struct Level {
     int columns = 0, rows = 0;

@@ -83,10 +83,4 @@ void Pyramid::build(int threads) {
   }
 }
 
-std::size_t Pyramid::bytes() const {
-  std::size_t sum = 0;
-  for (const std::vector<float>& level : storage_) sum += level.size() * sizeof(float);
-  return sum;
-}
-
 }  // namespace drumhead::kernels

@@ -25,7 +25,6 @@ class Pyramid {
   Border border() const { return border_; }
   int levels() const { return int(levels_.size()); }
   const ImageView& level(int l) const { return levels_[std::size_t(l)]; }
-  std::size_t bytes() const;
 
  private:
   Border border_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace drumhead::multigrid {
 namespace {
@@ -45,20 +46,16 @@ std::optional<CurveMethod> curve_method_named(std::string_view wanted) {
   return found->first;
 }
 
-std::string why_not_conforming(const SolverOptions& options) {
-  if (options.solver != Solver::gcr)
-    return std::string("solver ") + name(options.solver) + ": conforming curves need gcr";
-  return {};
-}
-
 CurveMethod chosen_method(const WarpProblem& problem, const SolverOptions& options) {
   if (options.curve_method == CurveMethod::averaged) return CurveMethod::averaged;
-  const std::string why_not = why_not_conforming(options);
+  const bool possible = options.solver == Solver::gcr;
   if (options.curve_method == CurveMethod::conforming) {
-    if (!why_not.empty()) throw std::invalid_argument(why_not);
+    if (!possible)
+      throw std::invalid_argument(std::string("solver ") + name(options.solver) +
+                                  ": conforming curves need gcr");
     return CurveMethod::conforming;
   }
-  if (!why_not.empty() || options.exact || !settles(problem)) return CurveMethod::averaged;
+  if (!possible || options.exact || !settles(problem)) return CurveMethod::averaged;
   return options.start != nullptr ? options.start->report.curve_method : CurveMethod::conforming;
 }
 

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which way a scene's curves are met: what conforming cells cannot do, and where they are chosen.
-#include <string>
-
+// Which way a scene's curves are met.
 #include <drumhead/multigrid/warp.h>
 
 namespace drumhead::multigrid {
-
-/// Why conforming cells cannot meet these curves, naming value and bound; empty: they can.
-std::string why_not_conforming(const SolverOptions& options);
 
 /// What `options.curve_method` means for this scene: automatic is conforming where that is
 /// possible, and otherwise, or where exact curves are asked for, averaged, the paper's way. (The

@@ -50,12 +50,10 @@ Motion motion(const grid::CurvePair& curve) {
 
 }  // namespace
 
-double turning_angle(const grid::CurvePair& curve) { return motion(curve).angle; }
-
 double largest_turn(const std::vector<grid::CurvePair>& curves) {
   double largest = 0.0;
   for (const grid::CurvePair& curve : curves)
-    largest = std::max(largest, std::abs(turning_angle(curve)));
+    largest = std::max(largest, std::abs(motion(curve).angle));
   return largest;
 }
 

@@ -9,12 +9,8 @@
 
 namespace drumhead::multigrid {
 
-/// Angle in radians that best turns source to target (least squares over arc length, about the
-/// centroids), positive clockwise with y down. With turn_degrees ≠ 0 it is the equivalent angle
-/// closest to that.
-double turning_angle(const grid::CurvePair& curve);
-
-/// Largest |turning_angle| of the curves.
+/// Largest of the angles, in radians, that best turn sources to targets (least squares over arc
+/// length, about the centroids). With turn_degrees ≠ 0 it is the equivalent angle closest to that.
 double largest_turn(const std::vector<grid::CurvePair>& curves);
 
 /// The curves with targets of as many segments as their sources (grid::matched).

@@ -150,9 +150,6 @@ class Resampler {
   /// threads at once.
   void render(const ImageTarget& out) const;
 
-  /// Bytes that the constructor allocated.
-  std::size_t bytes() const;
-
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -221,7 +221,6 @@ class SpecialRows {
     return visits(j, 0).empty() && visits(j, 1).empty() && none(loose(j)) && none(loose(j + 1)) &&
            borders_none;
   }
-  int near_count() const { return near_begin_.back(); }
   const NearNode& near_node(int n) const { return near_node_[std::size_t(n)]; }
   const NearRow<T>& near(int n) const { return near_[std::size_t(n)]; }
   const DiagonalRow<T>& diagonal(int n) const { return diagonal_[std::size_t(n)]; }
