@@ -26,8 +26,7 @@ NewtonStep take_step(const LinearSolver& solve, double theta, NestedNewton& newt
   newton.assemble_seconds += assembled - start;
   const double solved = now();
   newton.solve_seconds += solved - assembled;
-  double merit = 0.0;
-  const double t = oracle::line_search(newton.scene, newton.state, step, merit);
+  const double t = oracle::line_search(newton.scene, newton.state, step);
   newton.state = oracle::moved(newton.scene, newton.state, step, t);
   newton.assemble_seconds += now() - solved;
   return {step.head(2 * newton.scene.free_nodes).norm() / double(newton.scene.n + 1), t};

@@ -258,47 +258,4 @@ VectorXd gradient(const ConformingMembrane& m, const ConformingState& state) {
   return out;
 }
 
-Vector2d displacement_at(const ConformingMembrane& m, const ConformingState& state, Vector2d at) {
-  const grid::ConformingCells& cells = m.cells;
-  const Positions u = state.x - m.rest;
-  const int row = cells.nx + 1;
-  const int i0 = std::clamp(int(at.x()), 0, cells.nx - 1),
-            j0 = std::clamp(int(at.y()), 0, cells.ny - 1);
-  // Special cells reach beyond their places by as much as nodes have moved.
-  double best = -1e-9;
-  Vector2d value(0.0, 0.0);
-  bool found = false;
-  for (int j = std::max(0, j0 - 1); j <= std::min(cells.ny - 1, j0 + 1); ++j)
-    for (int i = std::max(0, i0 - 1); i <= std::min(cells.nx - 1, i0 + 1); ++i) {
-      const int c = cells.find_cell(i, j);
-      if (c < 0) continue;
-      for (int p = cells.part_begin[std::size_t(c)]; p < cells.part_begin[std::size_t(c) + 1]; ++p)
-        for (int t = cells.part_triangle_begin[std::size_t(p)];
-             t < cells.part_triangle_begin[std::size_t(p) + 1]; ++t) {
-          const grid::PartTriangle& tri = cells.triangle[std::size_t(t)];
-          double least = 1.0;
-          Vector2d here(0.0, 0.0);
-          for (std::size_t n = 0; n < 3; ++n) {
-            const int code =
-                cells.part_node[std::size_t(cells.part_node_begin[std::size_t(p)] + tri.node[n])];
-            const int node = code >= 4 ? row * (cells.ny + 1) + code - 4
-                                       : (j + (code >> 1)) * row + i + (code & 1);
-            const Vector2d away = at - m.rest.row(node).transpose();
-            const double shape = 1.0 + vector(tri.gradient[n]).dot(away);
-            least = std::min(least, shape);
-            here += shape * u.row(node).transpose();
-          }
-          if (least <= best) continue;
-          best = least;
-          value = here;
-          found = true;
-        }
-    }
-  if (found || cells.find_cell(i0, j0) >= 0) return value;
-  const double x = at.x() - i0, y = at.y() - j0;
-  const int n = j0 * row + i0;
-  return (1 - y) * ((1 - x) * u.row(n) + x * u.row(n + 1)) +
-         y * ((1 - x) * u.row(n + row) + x * u.row(n + row + 1));
-}
-
 }  // namespace drumhead::oracle

@@ -16,7 +16,6 @@
 // of two special cells are joined that have a piece of their outlines in common, not between two
 // held nodes; where their kappa differ, by so much less as one is of the other. Nodes: lattice
 // nodes j·(nx+1) + i, then the curve nodes.
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -84,8 +83,6 @@ Eigen::VectorXd gradient(const ConformingMembrane& membrane, const ConformingSta
 struct ConformingResult {
   ConformingState state;
   bool converged = false;
-  int steps = 0;
-  int folded_triangles = 0, folded_cells = 0;  ///< regular cells with a corner J < 0
 };
 /// Newton's method with the clamp schedule from the solution without pressures, or from positions
 /// `start` of the unknown nodes (which a solution keeps in the first step, that finds its P); each
@@ -93,9 +90,5 @@ struct ConformingResult {
 /// away.
 ConformingResult newton(const ConformingMembrane& membrane, const Positions* start = nullptr,
                         int most_steps = 60);
-
-/// Displacement at a rest position, both in cells.
-Eigen::Vector2d displacement_at(const ConformingMembrane& membrane, const ConformingState& state,
-                                Eigen::Vector2d at);
 
 }  // namespace drumhead::oracle

@@ -19,8 +19,6 @@ constexpr double kMostCondensed = 1e4;  // kappa of a row in the condensed matri
 constexpr double kExact = 1e6;          // theta above which the pressure is not clamped
 constexpr double kMeritKappa = 100.0;   // stiffer rows enter the merit with this
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// [H Bᵀ; B −C] (dx, dP) = (f, g) by condensation of the pressures and refinement.
 class Saddle {
  public:
@@ -99,37 +97,6 @@ VectorXd clamped(const VectorXd& P, double theta) {
   return (P.array() - *middle).cwiseMax(-theta).cwiseMin(theta);
 }
 
-void count_folds(const ConformingMembrane& m, ConformingResult& result) {
-  const grid::ConformingCells& cells = m.cells;
-  const Positions& x = result.state.x;
-  std::vector<int> outline;
-  for (int j = 0; j < cells.ny; ++j)
-    for (int c = cells.cell_begin[std::size_t(j)]; c < cells.cell_begin[std::size_t(j) + 1]; ++c)
-      for (int p = cells.part_begin[std::size_t(c)]; p < cells.part_begin[std::size_t(c) + 1]; ++p)
-        for (int t = cells.part_triangle_begin[std::size_t(p)];
-             t < cells.part_triangle_begin[std::size_t(p) + 1]; ++t) {
-          outline.clear();
-          for (const int n : cells.triangle[std::size_t(t)].node) {
-            const int code =
-                cells.part_node[std::size_t(cells.part_node_begin[std::size_t(p)] + n)];
-            outline.push_back(code >= 4 ? (cells.nx + 1) * (cells.ny + 1) + code - 4
-                                        : (j + (code >> 1)) * (cells.nx + 1) +
-                                              cells.cell_column[std::size_t(c)] + (code & 1));
-          }
-          result.folded_triangles += deformed_area({outline, 0.0, 0.0}, x) < 0.0;
-        }
-  for (const ConformingRow& row : m.rows) {
-    if (row.outline.size() != 4 || row.area != 1.0) continue;
-    bool folded = false;
-    for (std::size_t n = 0; n < 4; ++n) {
-      const Vector2d at = x.row(row.outline[n]);
-      const Vector2d to = x.row(row.outline[(n + 1) % 4]), from = x.row(row.outline[(n + 3) % 4]);
-      folded |= cross(to - at, from - at) < 0.0;
-    }
-    result.folded_cells += folded;
-  }
-}
-
 }  // namespace
 
 ConformingResult newton(const ConformingMembrane& m, const Positions* from, int most_steps) {
@@ -146,7 +113,7 @@ ConformingResult newton(const ConformingMembrane& m, const Positions* from, int 
     now = moved(m, now, factor.solve(-gradient(m, start).head(2 * m.unknowns)), {}, 1.0);
   }
   double theta = 1.0;
-  for (; result.steps < most_steps && !result.converged; ++result.steps) {
+  for (int n = 0; n < most_steps && !result.converged; ++n) {
     const Sparse H = hessian(m, clamped(now.P, theta)), B = area_derivatives(m, now.x);
     const VectorXd g = gradient(m, now);
     VectorXd dx, dP;
@@ -165,7 +132,6 @@ ConformingResult newton(const ConformingMembrane& m, const Positions* from, int 
     result.converged = t == 1.0 && dx.lpNorm<Eigen::Infinity>() < 1e-8;
     theta = t == 1.0 ? 8.0 * theta : std::max(1.0, theta / 8.0);
   }
-  count_folds(m, result);
   return result;
 }
 

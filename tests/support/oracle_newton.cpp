@@ -86,14 +86,12 @@ class Merit {
 }  // namespace
 
 // A change within rounding counts as a fall.
-double line_search(const OracleScene& scene, const State& state, const VectorXd& step,
-                   double& merit_now) {
+double line_search(const OracleScene& scene, const State& state, const VectorXd& step) {
   const State full = moved(scene, state, step, 1.0);
   const Merit merit(scene, full);
   const double before = merit(state), slack = 1e-12 * std::abs(before);
   for (double t = 1.0; t > 1e-4; t *= 0.5) {
-    merit_now = merit(t == 1.0 ? full : moved(scene, state, step, t));
-    if (merit_now <= before + slack) return t;
+    if (merit(t == 1.0 ? full : moved(scene, state, step, t)) <= before + slack) return t;
   }
   return 0.0;
 }
@@ -130,29 +128,28 @@ State harmonic(const OracleScene& scene) {
   return moved(membrane, start, step, 1.0);
 }
 
-OracleResult newton(const OracleScene& scene, const std::optional<State>& start,
-                    const NewtonOptions& options) {
+OracleResult newton(const OracleScene& scene, const std::optional<State>& start) {
+  constexpr int kMostSteps = 80;
+  constexpr double kTolerance = 1e-10;  // largest |dx| of the last step, in cells
+  constexpr double kClampGrowth = 8.0;
   OracleResult result;
   result.state = start ? *start : harmonic(scene);
   double theta = 1.0;
-  for (int step_number = 0; step_number < options.max_steps; ++step_number) {
+  while (result.steps < kMostSteps) {
     const State& now = result.state;
     const OracleSystem system = assemble(scene, now, clamped_pressure(scene, now.P, theta));
     VectorXd step;
-    const double residual = solve(system.matrix, -system.gradient, 2 * scene.free_nodes, step);
-    result.linear_residual = std::max(result.linear_residual, residual);
-    OracleStep record{theta, 0.0, step.head(2 * scene.free_nodes).lpNorm<Eigen::Infinity>(),
-                      system.gradient.lpNorm<Eigen::Infinity>(), 0.0};
-    record.t = line_search(scene, now, step, record.merit);
-    result.steps.push_back(record);
-    if (record.t == 0.0 && theta == 1.0) break;
-    result.state = moved(scene, now, step, record.t);
-    if (record.t == 1.0 && record.dx_max < options.tolerance) {
+    solve(system.matrix, -system.gradient, 2 * scene.free_nodes, step);
+    const double t = line_search(scene, now, step);
+    ++result.steps;
+    if (t == 0.0 && theta == 1.0) break;
+    result.state = moved(scene, now, step, t);
+    const double dx_max = step.head(2 * scene.free_nodes).lpNorm<Eigen::Infinity>();
+    if (t == 1.0 && dx_max < kTolerance) {
       result.converged = true;
       break;
     }
-    theta = record.t == 1.0 ? theta * options.max_theta_boost
-                            : std::max(1.0, theta / options.max_theta_boost);
+    theta = t == 1.0 ? theta * kClampGrowth : std::max(1.0, theta / kClampGrowth);
   }
   return result;
 }

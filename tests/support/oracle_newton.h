@@ -4,40 +4,26 @@
 // schedule of clamped pressures as the solver, so that both find the same minimum, and nothing else
 // in common.
 #include <optional>
-#include <vector>
 
 #include "oracle_system.h"
 
 namespace drumhead::oracle {
 
-struct NewtonOptions {
-  int max_steps = 80;
-  double tolerance = 1e-10;  ///< largest |dx| of the last step, in cells
-  double max_theta_boost = 8.0;
-};
-
-struct OracleStep {
-  double theta = 1.0, t = 1.0, dx_max = 0.0, gradient_max = 0.0, merit = 0.0;
-};
-
 struct OracleResult {
   State state;
   bool converged = false;
-  std::vector<OracleStep> steps;
-  double linear_residual = 0.0;  ///< largest relative residual of the linear solves
+  int steps = 0;
 };
 
 /// The minimum without pressures (kappa = 0 everywhere), which is a linear problem; P = 0.
 State harmonic(const OracleScene& scene);
 
-/// Newton from `start`, or from the harmonic solution.
-OracleResult newton(const OracleScene& scene, const std::optional<State>& start = {},
-                    const NewtonOptions& options = {});
+/// Newton from `start`, or from the harmonic solution, until no node moves by 1e-10 cells.
+OracleResult newton(const OracleScene& scene, const std::optional<State>& start = {});
 
-/// The largest t of 1, 1/2, 1/4 … at which the merit of state + t · step has fallen, and that
-/// merit; 0 when it never does.
-double line_search(const OracleScene& scene, const State& state, const Eigen::VectorXd& step,
-                   double& merit);
+/// The largest t of 1, 1/2, 1/4 … at which the merit of state + t · step has fallen; 0 when it
+/// never does.
+double line_search(const OracleScene& scene, const State& state, const Eigen::VectorXd& step);
 
 /// Solves matrix · step = right side for a symmetric indefinite matrix that may be (consistently)
 /// singular in its P and q blocks: those are shifted by −1e-9 for the factorisation and the shift
