@@ -3,7 +3,6 @@
 // A level as the solver holds it (aligned fields), with arbitrary values and the curve rows of a
 // circle, on which the kernels are timed.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>

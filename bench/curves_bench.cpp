@@ -6,7 +6,6 @@
 //   curves_bench [--truth FOLDER]      the folder (truth.h) is for the sponge alone
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>

@@ -4,7 +4,6 @@
 // systems. An analysis is kept as long as the matrix keeps its pattern.
 #include <cstddef>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <Eigen/SparseCore>

@@ -10,7 +10,6 @@
 //     …                       values of the whole solve (solution_values.h)
 #include <cmath>
 #include <ctime>
-#include <vector>
 
 #include <drumhead/kernels/threads.h>
 

@@ -10,7 +10,6 @@
 // is constant on the corners that meet in a vertex on one side of the curves, each with a third of
 // its triangle, and J̄ is their mean: one P for two unknowns, as on the lattice. P is eliminated,
 // which leaves a positive definite matrix of the vertices alone.
-#include <cstddef>
 
 #include <Eigen/Core>
 

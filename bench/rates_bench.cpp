@@ -12,7 +12,6 @@
 #include <ctime>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include <drumhead/kernels/threads.h>
 

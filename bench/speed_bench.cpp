@@ -7,8 +7,6 @@
 //   speed_bench tolerances                   error against time over tolerances, on one lattice
 //   speed_bench solvers [--truth FOLDER]     error against time by the paper's linear solvers
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <string_view>
 #include <thread>
 

@@ -7,7 +7,6 @@
 // that shape the membrane count (cells, margin, kappa, weights, turns), masks do not.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 

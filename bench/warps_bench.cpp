@@ -3,7 +3,6 @@
 // 1000 × 1000 px: rows of the table "warps" (warp_rivals.h).
 //   warps_bench [SPACING…]     px between the rivals' points, default 32 8
 #include <cstdio>
-#include <cstdlib>
 
 #include "support/scene_problem.h"
 #include "warp_rivals.h"

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "canvas.h"
 #include "html.h"

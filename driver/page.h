@@ -2,7 +2,6 @@
 #pragma once
 // The report as a page: one HTML file with everything in it that loads nothing. Its text is
 // page.html, compiled in; what stands there in {{…}} is filled in here.
-#include <filesystem>
 #include <string>
 
 #include "pictures.h"

@@ -4,8 +4,6 @@
 #include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cassert>
-#include <stdexcept>
-#include <string>
 
 #include "curve_nodes.h"
 #include "held_nodes.h"

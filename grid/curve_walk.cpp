@@ -2,7 +2,6 @@
 #include "curve_walk.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <drumhead/grid/conforming.h>
 

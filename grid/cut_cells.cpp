@@ -4,8 +4,6 @@
 #include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "crossings.h"
 #include "made_of_curves.h"

@@ -2,7 +2,6 @@
 #include <drumhead/kernels/cuts.h>
 
 #include <cstddef>
-#include <initializer_list>
 
 namespace drumhead::kernels {
 namespace {

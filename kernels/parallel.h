@@ -5,7 +5,6 @@
 // kSerialNodes the loop runs serially: waking threads costs more than the work.
 #include <omp.h>
 
-#include <array>
 #include <cstddef>
 
 namespace drumhead::kernels {

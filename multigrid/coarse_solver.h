@@ -4,7 +4,6 @@
 // applying the level's own kernels to unit vectors (no second copy of a formula) and factorised by
 // Eigen's LU.
 #include <memory>
-#include <vector>
 
 #include "level.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "conforming_notes.h"
 
-#include <cmath>
 #include <map>
 #include <tuple>
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <drumhead/kernels/blocks.h>
 #include <drumhead/kernels/cuts.h>
 #include <drumhead/kernels/elastic.h>
 #include <drumhead/kernels/reduce.h>

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "conforming_visits.h"
-#include "split_cells.h"
 #include "volume_gap.h"
 
 namespace drumhead::multigrid {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "command_line.h"
 #include "driver_scratch.h"
 #include "image.h"
 #include "masks.h"

@@ -9,7 +9,6 @@
 
 #include "driver_scratch.h"
 #include "image.h"
-#include "page.h"
 #include "page_plot.h"
 
 namespace drumhead::driver {

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <drumhead/kernels/reduce.h>
 #include <drumhead/kernels/threads.h>
 
 #include "support/newton_level.h"

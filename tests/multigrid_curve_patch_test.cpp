@@ -7,8 +7,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include <drumhead/kernels/threads.h>
-
 #include "curve_patch.h"
 #include "envelope.h"
 #include "support/kernel_cases.h"

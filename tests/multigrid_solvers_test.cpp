@@ -2,9 +2,10 @@
 // Every linear solver by name: whole solves, and what each method promises of a single system.
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include <gtest/gtest.h>
+
+#include <drumhead/kernels/reduce.h>
 
 #include "minres.h"
 #include "support/newton_level.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The oracle's cutting on lattices that can be checked by hand, and against total length.
-#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>

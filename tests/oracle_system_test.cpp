@@ -2,7 +2,6 @@
 // The oracle against finite differences of its own Lagrangian. Along one coordinate L is at most
 // quadratic, and so is its gradient, so that central differences of any width are exact: rounding
 // is all that is left.
-#include <cmath>
 #include <limits>
 #include <random>
 

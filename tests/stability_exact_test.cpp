@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The whole solver with exact curve rows: the known energies at 32², and at 64² the same lattice,
 // node by node, as Newton's method with a direct factorisation of the assembled matrix.
-#include <cmath>
 
 #include <gtest/gtest.h>
 

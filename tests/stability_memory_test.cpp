@@ -2,7 +2,6 @@
 // What a scene does not need is not stored: bytes of the solver per node, by material, and the work
 // of a Newton step. Cycles alone solve this scene but for its start on a coarse lattice, whose
 // directions of GCR are bounded apart.
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 

@@ -2,7 +2,6 @@
 // Nested iteration on lattices that a direct solver would be slow on: it converges, in few Newton
 // steps per level, to the error that it reports, and the lattices converge to one another with
 // first order.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

@@ -5,8 +5,6 @@
 #include <ostream>
 #include <vector>
 
-#include <drumhead/kernels/model.h>
-
 #include "support/scene_problem.h"
 
 namespace drumhead::scenes {

@@ -10,7 +10,6 @@
 
 #include <drumhead/kernels/cuts.h>
 #include <drumhead/kernels/elastic.h>
-#include <drumhead/kernels/reduce.h>
 #include <drumhead/multigrid/warp.h>
 
 #include "exact_rows.h"

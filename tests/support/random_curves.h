@@ -4,7 +4,6 @@
 // fail, several at once, in cells of an nx × ny lattice of unit cells.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 

@@ -4,7 +4,6 @@
 // exactly the size that views.h asks for, and whole levels (state, material, curve rows, correction
 // and right-hand side) on top of them. All values are multiples of 2^-12, so that float holds them
 // and the double oracle sees the same numbers.
-#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <random>

@@ -2,7 +2,6 @@
 #pragma once
 // Lattices and pictures for the resampler's tests.
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <random>
 #include <vector>

@@ -4,7 +4,6 @@
 // hold row after row: value (i, j) at j·columns + i.
 #include <drumhead/kernels/views.h>
 
-#include <cstddef>
 #include <type_traits>
 
 namespace drumhead::kernels {
