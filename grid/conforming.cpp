@@ -4,6 +4,7 @@
 #include <drumhead/kernels/refuse.h>
 #include <algorithm>
 #include <cassert>
+#include <span>
 
 #include "curve_nodes.h"
 #include "held_nodes.h"
@@ -43,8 +44,8 @@ class Conformer {
   std::vector<std::int64_t> special_cells() const;
   void go_on(CellIndex cell);
   int held_corner(CellIndex cell, int code) const;
-  std::vector<CellVertex> outline(CellIndex cell) const;
-  bool add_cell(CellIndex cell, const std::vector<Chord>& chords);
+  void set_outline(CellIndex cell);
+  bool add_cell(CellIndex cell, std::span<const Chord> chords);
   void list_nodes();
 
   const std::vector<double>& weights_;
@@ -57,6 +58,9 @@ class Conformer {
   std::size_t edge_nodes_ = 0;  // curve nodes on edges; the ones in cells follow
   // Of the cell at hand, in its lower and its upper row: see go_on.
   std::array<std::size_t, 2> held_at_{}, edge_at_{};
+  std::array<int, 4> corner_{};  // as ConformingCells::cell_corner
+  std::vector<CellVertex> outline_;
+  CellSplit split_{first_curve_node(), nodes_};
   ConformingCells cells_;
 };
 
@@ -70,16 +74,16 @@ bool Conformer::assemble() {
   cells_.ny = lattice_.ny;
   cells_.cell_begin.assign(std::size_t(lattice_.ny) + 1, 0);
   cells_.part_begin = cells_.part_node_begin = cells_.part_triangle_begin = {0};
-  std::vector<Chord> chords = nodes_.chords, inside;
+  std::vector<Chord>& chords = nodes_.chords;
   std::ranges::stable_sort(chords, {}, [&](const Chord& c) { return cell_number(c.cell); });
   auto next = chords.begin();
   bool good = true;
   for (const std::int64_t number : special_cells()) {
     const CellIndex cell{int(number % lattice_.nx), int(number / lattice_.nx)};
-    for (inside.clear(); next != chords.end() && cell_number(next->cell) <= number; ++next)
-      inside.push_back(*next);
+    const auto first = next;
+    while (next != chords.end() && cell_number(next->cell) <= number) ++next;
     go_on(cell);
-    if (add_cell(cell, inside)) continue;
+    if (add_cell(cell, {first, next})) continue;
     good = false;
     Simplified& level = simplified_[number];
     assert(level != Simplified::at_rest);
@@ -140,12 +144,12 @@ int Conformer::held_corner(CellIndex cell, int code) const {
   return at < nodes_.held.size() && nodes_.held[at] == node ? int(at) : -1;
 }
 
-std::vector<CellVertex> Conformer::outline(CellIndex cell) const {
-  std::vector<CellVertex> vertices;
-  vertices.reserve(8);
+void Conformer::set_outline(CellIndex cell) {
+  std::vector<CellVertex>& vertices = outline_;
+  vertices.clear();
   auto corner = [&](int code, unsigned sides) {
     const int i = cell.i + (code & 1), j = cell.j + (code >> 1);
-    const int held = held_corner(cell, code);
+    const int held = corner_[std::size_t(code)] = held_corner(cell, code);
     const Point rest = held < 0 ? Point{double(i), double(j)} : nodes_.held_rest[std::size_t(held)];
     const bool edge = i == 0 || j == 0 || i == lattice_.nx || j == lattice_.ny;
     vertices.push_back({lattice_node(i, j), code, rest, sides, held >= 0 || edge});
@@ -167,23 +171,23 @@ std::vector<CellVertex> Conformer::outline(CellIndex cell) const {
   side(2 * (node + lattice_.nx + 1), 4, true);
   corner(2, 4 | 8);
   side(2 * node + 1, 8, true);
-  return vertices;
 }
 
 /// Appends a special cell; a cell that is whole and in its place stays regular.
-bool Conformer::add_cell(CellIndex cell, const std::vector<Chord>& chords) {
-  CellSplit split(cell, outline(cell), first_curve_node(), nodes_);
-  const std::vector<CellVertex> corners = split.vertices();
+bool Conformer::add_cell(CellIndex cell, std::span<const Chord> chords) {
+  set_outline(cell);
+  split_.begin(cell, outline_);
   for (const Chord& chord : chords)
-    if (!split.add(chord)) return false;
-  const bool whole = split.parts().size() == 1 && corners.size() == 4;
-  const bool in_place = std::ranges::all_of(corners, [&](const CellVertex& v) {
+    if (!split_.add(chord)) return false;
+  const bool whole = split_.parts() == 1 && outline_.size() == 4;
+  const bool in_place = std::ranges::all_of(outline_, [&](const CellVertex& v) {
     return v.rest == Point{double(cell.i + (v.code & 1)), double(cell.j + (v.code >> 1))};
   });
   if (whole && in_place) return true;
-  for (const std::vector<int>& part : split.parts()) {
+  for (int p = 0; p < split_.parts(); ++p) {
+    const std::span<const int> part = split_.part(p);
     const std::size_t first = cells_.triangle.size();
-    if (!split.triangulate(part, cells_.triangle)) return false;
+    if (!split_.triangulate(part, cells_.triangle)) return false;
     double area = 0.0;
     Point moment;
     for (std::size_t t = first; t < cells_.triangle.size(); ++t) {
@@ -191,18 +195,15 @@ bool Conformer::add_cell(CellIndex cell, const std::vector<Chord>& chords) {
       area += triangle.area;
       for (const int n : triangle.node)
         moment = moment +
-                 (triangle.area / 3.0) * split.vertices()[std::size_t(part[std::size_t(n)])].rest;
+                 (triangle.area / 3.0) * split_.vertices()[std::size_t(part[std::size_t(n)])].rest;
     }
-    for (const int n : part) cells_.part_node.push_back(split.vertices()[std::size_t(n)].code);
+    for (const int n : part) cells_.part_node.push_back(split_.vertices()[std::size_t(n)].code);
     cells_.part_node_begin.push_back(int(cells_.part_node.size()));
     cells_.part_triangle_begin.push_back(int(cells_.triangle.size()));
     cells_.part_area.push_back(area);
     cells_.part_centre.push_back((1.0 / area) * moment);
   }
-  std::array<int, 4> held{};
-  for (const CellVertex& v : corners)
-    if (v.code < 4) held[std::size_t(v.code)] = held_corner(cell, v.code);
-  cells_.cell_corner.push_back(held);
+  cells_.cell_corner.push_back(corner_);
   cells_.cell_column.push_back(cell.i);
   cells_.part_begin.push_back(cells_.parts());
   ++cells_.cell_begin[std::size_t(cell.j) + 1];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace drumhead::grid {
 namespace {
@@ -29,15 +30,13 @@ PartTriangle triangle(std::array<int, 3> node, Point a, Point b, Point c) {
 
 }  // namespace
 
-CellSplit::CellSplit(CellIndex cell, std::vector<CellVertex> outline, Vertex first_curve_node,
-                     CurveNodes& nodes)
-    : cell_(cell),
-      first_curve_node_(first_curve_node),
-      nodes_(nodes),
-      vertices_(std::move(outline)) {
-  std::vector<int> whole;
-  for (std::size_t n = 0; n < vertices_.size(); ++n) whole.push_back(int(n));
-  parts_.push_back(std::move(whole));
+void CellSplit::begin(CellIndex cell, const std::vector<CellVertex>& outline) {
+  cell_ = cell;
+  vertices_ = outline;
+  loops_.resize(outline.size());
+  std::iota(loops_.begin(), loops_.end(), 0);
+  parts_.assign(1, {0, loops_.size()});
+  pieces_.clear();
 }
 
 int CellSplit::find(Vertex vertex) const {
@@ -107,17 +106,19 @@ int CellSplit::visit_between(int from, int to, double lambda, const CellVertex& 
 
 bool CellSplit::split_common_part(int a, int b, int from, int to) {
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const std::vector<int>& part = parts_[p];
+    const auto [begin, end] = parts_[p];
+    const std::span<const int> part = loop(parts_[p]);
     const auto at_a = std::ranges::find(part, a), at_b = std::ranges::find(part, b);
     if (at_a == part.end() || at_b == part.end()) continue;
-    const auto [first, second] = std::minmax({at_a - part.begin(), at_b - part.begin()});
-    const std::ptrdiff_t apart = second - first, size = std::ptrdiff_t(part.size());
-    if (apart == 1 || apart == size - 1) return true;  // a chord of another branch
-    std::vector<int> near(part.begin() + first, part.begin() + second + 1);
-    std::vector<int> far(part.begin() + second, part.end());
-    far.insert(far.end(), part.begin(), part.begin() + first + 1);
-    parts_[p] = std::move(near);
-    parts_.push_back(std::move(far));
+    const auto [low, high] = std::minmax({at_a - part.begin(), at_b - part.begin()});
+    const std::size_t first = begin + std::size_t(low), second = begin + std::size_t(high);
+    if (second - first == 1 || second - first == end - begin - 1)
+      return true;  // a chord of another branch
+    const std::size_t far = loops_.size();
+    for (std::size_t n = second; n < end; ++n) loops_.push_back(int(loops_[n]));
+    for (std::size_t n = begin; n <= first; ++n) loops_.push_back(int(loops_[n]));
+    parts_[p] = {first, second + 1};
+    parts_.push_back({far, loops_.size()});
     pieces_.push_back({a, b, from, to});
     return true;
   }
@@ -152,11 +153,16 @@ bool CellSplit::cross(int a, int b, int from, int to, int depth) {
   nodes_.curve_rest.push_back(node.rest);
   const int x = int(vertices_.size());
   vertices_.push_back(node);
-  for (std::vector<int>& part : parts_)
-    for (std::size_t n = 0; n < part.size(); ++n) {
-      const std::size_t next = (n + 1) % part.size();
-      if (std::minmax(part[n], part[next]) != std::minmax(piece.a, piece.b)) continue;
-      part.insert(part.begin() + std::ptrdiff_t(n) + 1, x);
+  for (Part& part : parts_)
+    for (std::size_t n = part.begin; n < part.end; ++n) {
+      const std::size_t next = n + 1 < part.end ? n + 1 : part.begin;
+      if (std::minmax(int(loops_[n]), int(loops_[next])) != std::minmax(piece.a, piece.b)) continue;
+      const std::size_t begin = loops_.size();
+      for (std::size_t k = part.begin; k < part.end; ++k) {
+        loops_.push_back(int(loops_[k]));
+        if (k == n) loops_.push_back(x);
+      }
+      part = {begin, loops_.size()};
       break;
     }
   const int other = visit_between(piece.from, piece.to, on_piece, node);
@@ -166,14 +172,14 @@ bool CellSplit::cross(int a, int b, int from, int to, int depth) {
   return split_common_part(a, x, from, visit) && join(x, b, visit, to, depth + 1);
 }
 
-bool CellSplit::triangulate(const std::vector<int>& part, std::vector<PartTriangle>& out) const {
+bool CellSplit::triangulate(std::span<const int> part, std::vector<PartTriangle>& out) const {
   const int count = int(part.size());
   if (count < 3 || count > kMostPartNodes) return false;
   auto at = [&](int n) { return vertices_[std::size_t(part[std::size_t(n)])].rest; };
   // best[a][b]: the least quality of the best triangulation of vertices a … b; split[a][b]: the
   // third corner of its triangle on a–b.
-  std::array<std::array<double, kMostPartNodes>, kMostPartNodes> best{};
-  std::array<std::array<int, kMostPartNodes>, kMostPartNodes> split{};
+  std::array<std::array<double, kMostPartNodes>, kMostPartNodes> best;
+  std::array<std::array<int, kMostPartNodes>, kMostPartNodes> split;
   for (int width = 1; width < count; ++width)
     for (int a = 0; a + width < count; ++a) {
       const std::size_t b = std::size_t(a + width);
@@ -187,16 +193,14 @@ bool CellSplit::triangulate(const std::vector<int>& part, std::vector<PartTriang
       }
     }
   if (best[0][std::size_t(count - 1)] < kLeastQuality) return false;
-  std::vector<std::array<int, 2>> open{{0, count - 1}};
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    if (b - a < 2) continue;
+  auto add = [&](auto& self, int a, int b) {
+    if (b - a < 2) return;
     const int k = split[std::size_t(a)][std::size_t(b)];
     out.push_back(triangle({a, k, b}, at(a), at(k), at(b)));
-    open.push_back({a, k});
-    open.push_back({k, b});
-  }
+    self(self, k, b);
+    self(self, a, k);
+  };
+  add(add, 0, count - 1);
   return true;
 }
 
