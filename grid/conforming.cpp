@@ -358,9 +358,9 @@ int ConformingCells::find_node(int i, int j) const {
   return at != end && *at == i ? int(at - node_column.begin()) : -1;
 }
 
-int ConformingCells::part_at(int c, Point at) const {
-  const int j = int(std::ranges::upper_bound(cell_begin, c) - cell_begin.begin()) - 1;
+int ConformingCells::part_at(int c, int j, Point at) const {
   int nearest = part_begin[std::size_t(c)];
+  if (part_begin[std::size_t(c) + 1] == nearest + 1) return nearest;
   double best = -1e300;             // the least barycentric coordinate: how far inside the triangle
   constexpr double kInside = 1e-6;  // in no other triangle then
   for (int p = part_begin[std::size_t(c)]; p < part_begin[std::size_t(c) + 1]; ++p)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include "conforming.h"
 #include "conforming_visits.h"
@@ -35,51 +37,42 @@ InTriangle find_triangle(const grid::ConformingCells& cells, int c, int j, grid:
   return found;
 }
 
-/// Begins of rows 0 … rows of values that are sorted by row.
-template <class Rows>
-std::vector<int> row_begins(const Rows& values, int rows) {
-  std::vector<int> begin(std::size_t(rows) + 1, 0);
-  for (const auto& value : values) ++begin[std::size_t(value.j) + 1];
-  for (std::size_t j = 1; j < begin.size(); ++j) begin[j] += begin[j - 1];
-  return begin;
+/// Begins of rows from the numbers of entries in them, which stand one place further.
+void add_up(std::vector<int>& counts) {
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
 }
 
 template <class T>
 void list_pairs(const grid::ConformingCells& fine, const grid::ConformingCells& coarse,
                 kernels::SpecialTransfer<T>& transfer) {
-  struct Row {
-    int j;
-    typename kernels::SpecialTransfer<T>::Pair pair;
-  };
-  std::vector<Row> rows;
-  for_special(fine, [&](int c, int i, int j) {
-    const int parent = coarse.find_cell(i / 2, j / 2);
-    for_parts(fine, c, [&](int p) {
-      const grid::Point centre = 0.5 * fine.part_centre[std::size_t(p)];
-      rows.push_back({j, {p, parent < 0 ? ~(i / 2) : coarse.part_at(parent, centre)}});
-    });
-  });
-  for_special(coarse, [&](int parent, int I, int J) {
-    for (int j = 2 * J; j < std::min(2 * J + 2, fine.ny); ++j)
+  transfer.pair_begin.assign(1, 0);
+  transfer.pair.reserve(2 * fine.part_area.size());
+  for (int j = 0; j < fine.ny; ++j) {
+    const int J = j / 2;
+    InRow parents(coarse.cell_begin, coarse.cell_column, J);
+    for (int c = fine.cell_begin[std::size_t(j)]; c < fine.cell_begin[std::size_t(j) + 1]; ++c) {
+      const int I = fine.cell_column[std::size_t(c)] / 2, parent = parents.find(I);
+      for_parts(fine, c, [&](int p) {
+        const grid::Point centre = 0.5 * fine.part_centre[std::size_t(p)];
+        transfer.pair.push_back({p, parent < 0 ? ~I : coarse.part_at(parent, J, centre)});
+      });
+    }
+    InRow special(fine.cell_begin, fine.cell_column, j);
+    for (int c = coarse.cell_begin[std::size_t(J)]; c < coarse.cell_begin[std::size_t(J) + 1];
+         ++c) {
+      const int I = coarse.cell_column[std::size_t(c)];
       for (int i = 2 * I; i < std::min(2 * I + 2, fine.nx); ++i)
-        if (fine.find_cell(i, j) < 0)
-          rows.push_back({j, {~i, coarse.part_at(parent, {0.5 * (i + 0.5), 0.5 * (j + 0.5)})}});
-  });
-  std::ranges::stable_sort(rows, {}, &Row::j);
-  for (const Row& row : rows) transfer.pair.push_back(row.pair);
-  transfer.pair_begin = row_begins(rows, fine.ny);
+        if (special.find(i) < 0)
+          transfer.pair.push_back({~i, coarse.part_at(c, J, {0.5 * (i + 0.5), 0.5 * (j + 0.5)})});
+    }
+    transfer.pair_begin.push_back(int(transfer.pair.size()));
+  }
 }
 
-/// An inner fine node and the special coarse cell (I, J) that it rests in.
-struct FineNode {
-  int i, j, I, J;
-  InTriangle place;
-};
-
-/// The place of node (i, j) in special coarse cell c, or beside it.
-InTriangle place_node(const grid::ConformingCells& fine, int i, int j,
+/// The place of node (i, j), number `held` of those that curves hold, in special coarse cell c, or
+/// beside it.
+InTriangle place_node(const grid::ConformingCells& fine, int i, int j, int held,
                       const grid::ConformingCells& coarse, int c, int I, int J) {
-  const int held = fine.find_node(i, j);
   if (held >= 0) return find_triangle(coarse, c, J, 0.5 * fine.node[std::size_t(held)].rest);
   const int corner = (i > 2 * I ? 1 : 0) + (j > 2 * J ? 2 : 0);
   if (i % 2 == 0 && j % 2 == 0 && coarse.cell_corner[std::size_t(c)][std::size_t(corner)] < 0)
@@ -87,66 +80,70 @@ InTriangle place_node(const grid::ConformingCells& fine, int i, int j,
   return find_triangle(coarse, c, J, {0.5 * i, 0.5 * j});
 }
 
-/// Sorted by row, then column.
-std::vector<FineNode> nodes_in_special_cells(const grid::ConformingCells& fine,
-                                             const grid::ConformingCells& coarse) {
-  std::vector<FineNode> nodes, row;
-  std::vector<std::array<int, 2>> order;  // column, number in `row`
-  for (int j = 1; j < fine.ny; ++j) {
-    row.clear();
-    order.clear();
-    for (int J = (j - 1) / 2; J <= std::min(j / 2, coarse.ny - 1); ++J)
-      for (int c = coarse.cell_begin[std::size_t(J)]; c < coarse.cell_begin[std::size_t(J) + 1];
-           ++c) {
-        const int I = coarse.cell_column[std::size_t(c)];
-        for (int i = std::max(2 * I, 1); i <= std::min(2 * I + 2, fine.nx - 1); ++i) {
-          order.push_back({i, int(row.size())});
-          row.push_back({i, j, I, J, place_node(fine, i, j, coarse, c, I, J)});
-        }
-      }
-    std::ranges::sort(order);
-    for (std::size_t n = 0; n < order.size();) {
-      // Where corners have moved, a node between two cells lies in that which it is deepest in.
-      const FineNode* deepest = &row[std::size_t(order[n][1])];
-      for (const int i = order[n][0]; n < order.size() && order[n][0] == i; ++n)
-        if (const FineNode& node = row[std::size_t(order[n][1])];
-            node.place.least > deepest->place.least)
-          deepest = &node;
-      nodes.push_back(*deepest);
+/// The inner nodes of a fine row in special coarse cells.
+void place_row(const grid::ConformingCells& fine, int j, const grid::ConformingCells& coarse,
+               std::vector<PlacedNode>& nodes) {
+  struct Cells {  // of a coarse row, from the one on that the node may lie in
+    int J, at, end;
+  };
+  std::array<Cells, 2> rows{};
+  std::size_t count = 0;
+  for (int J = (j - 1) / 2; J <= std::min(j / 2, coarse.ny - 1); ++J)
+    rows[count++] = {J, coarse.cell_begin[std::size_t(J)], coarse.cell_begin[std::size_t(J) + 1]};
+  auto west = [&](int c) { return 2 * coarse.cell_column[std::size_t(c)]; };
+  InRow held_nodes(fine.node_begin, fine.node_column, j);
+  for (int i = 1;; ++i) {
+    int next = fine.nx;
+    for (Cells& row : std::span(rows).first(count)) {
+      while (row.at < row.end && west(row.at) + 2 < i) ++row.at;
+      if (row.at < row.end) next = std::min(next, std::max(i, west(row.at)));
     }
+    i = next;
+    if (i == fine.nx) return;
+    const int held = held_nodes.find(i);
+    // Where corners have moved, a node between two cells lies in that which it is deepest in.
+    double deepest = 0.0;
+    bool placed = false;
+    for (const Cells& row : std::span(rows).first(count))
+      for (int c = row.at; c < row.end && west(c) <= i; ++c) {
+        const int I = west(c) / 2;
+        const InTriangle in = place_node(fine, i, j, held, coarse, c, I, row.J);
+        if (placed && !(in.least > deepest)) continue;
+        if (!placed) nodes.emplace_back();
+        nodes.back() = {i, j, I, row.J, in.code, in.weight};
+        deepest = in.least;
+        placed = true;
+      }
   }
-  return nodes;
 }
 
 /// Weights of soft coarse curve nodes in a fine lattice node.
 template <class T>
-void list_curve_nodes(const FineNode& node, const grid::ConformingCells& coarse,
+void list_curve_nodes(const PlacedNode& node, const grid::ConformingCells& coarse,
                       kernels::SpecialTransfer<T>& transfer) {
   for (std::size_t a = 0; a < 3; ++a) {
-    const int curve = node.place.code[a] - kernels::kFirstCrossing;
+    const int curve = node.code[a] - kernels::kFirstCrossing;
     if (curve >= 0 && !std::isinf(coarse.curve_node[std::size_t(curve)].stiffness))
-      transfer.of_node.push_back({node.i, curve, T(node.place.weight[a])});
+      transfer.of_node.push_back({node.i, curve, T(node.weight[a])});
   }
 }
 
 template <class T>
-void list_nodes(const std::vector<FineNode>& nodes, const grid::ConformingCells& fine,
+void list_nodes(const std::vector<PlacedNode>& nodes, const grid::ConformingCells& fine,
                 const grid::ConformingCells& coarse, kernels::SpecialTransfer<T>& transfer) {
-  struct Row {
-    int j;
-  };
-  std::vector<FineNode> listed;
-  std::vector<Row> of_node;
-  for (const FineNode& node : nodes) {
+  transfer.node_begin.assign(std::size_t(fine.ny) + 2, 0);
+  transfer.of_node_begin = transfer.node_begin;
+  for (const PlacedNode& node : nodes) {
     const int held = fine.find_node(node.i, node.j);
     if (held >= 0 && std::isinf(fine.node[std::size_t(held)].stiffness)) continue;
+    const std::size_t curves = transfer.of_node.size();
     list_curve_nodes(node, coarse, transfer);
-    of_node.resize(transfer.of_node.size(), {node.j});
+    transfer.of_node_begin[std::size_t(node.j) + 1] += int(transfer.of_node.size() - curves);
     const double x = 0.5 * node.i - node.I, y = 0.5 * node.j - node.J;
     std::array<double, 4> beyond{-(1 - x) * (1 - y), -x * (1 - y), -(1 - x) * y, -x * y};
     for (std::size_t a = 0; a < 3; ++a)
-      if (node.place.code[a] < kernels::kFirstCrossing)
-        beyond[std::size_t(node.place.code[a])] += node.place.weight[a];
+      if (node.code[a] < kernels::kFirstCrossing)
+        beyond[std::size_t(node.code[a])] += node.weight[a];
     // A coarse row takes residuals from the three fine rows around it only; a node on it, beside a
     // moved corner, has little weight in other rows.
     if (node.j % 2 == 0) std::fill_n(beyond.begin() + (node.j == 2 * node.J ? 2 : 0), 2, 0.0);
@@ -156,10 +153,11 @@ void list_nodes(const std::vector<FineNode>& nodes, const grid::ConformingCells&
     out.column = node.I;
     out.row = node.J;
     std::ranges::transform(beyond, out.weight, [](double w) { return T(w); });
-    listed.push_back(node);
+    ++transfer.node_begin[std::size_t(node.j) + 1];
   }
-  transfer.node_begin = row_begins(listed, fine.ny + 1);
-  if (!of_node.empty()) transfer.of_node_begin = row_begins(of_node, fine.ny + 1);
+  add_up(transfer.node_begin);
+  add_up(transfer.of_node_begin);
+  if (transfer.of_node.empty()) transfer.of_node_begin.clear();
 }
 
 /// Where a point of the finer level, in coarse cells, lies: of the cells around it the special one
@@ -218,9 +216,14 @@ void list_curves(const grid::ConformingCells& fine, const grid::ConformingCells&
         rows.push_back({row, {int(n), curve, -1, T(place.in.weight[a])}});
     }
   }
+  if (rows.empty()) return;
   std::ranges::stable_sort(rows, {}, &Row::j);
-  for (const Row& entry : rows) transfer.of_curve.push_back(entry.entry);
-  if (!rows.empty()) transfer.of_curve_begin = row_begins(rows, fine.ny + 1);
+  transfer.of_curve_begin.assign(std::size_t(fine.ny) + 2, 0);
+  for (const Row& entry : rows) {
+    transfer.of_curve.push_back(entry.entry);
+    ++transfer.of_curve_begin[std::size_t(entry.j) + 1];
+  }
+  add_up(transfer.of_curve_begin);
 }
 
 }  // namespace
@@ -228,11 +231,10 @@ void list_curves(const grid::ConformingCells& fine, const grid::ConformingCells&
 template <class T>
 void join_levels(const grid::ConformingCells& coarse, ConformingLevel<T>& level) {
   const grid::ConformingCells& fine = level.geometry;
-  const std::vector<FineNode> nodes = nodes_in_special_cells(fine, coarse);
-  for (const FineNode& node : nodes)
-    level.placed.push_back({node.i, node.j, node.I, node.J, node.place.code, node.place.weight});
+  level.placed.reserve(5 * coarse.cell_column.size());
+  for (int j = 1; j < fine.ny; ++j) place_row(fine, j, coarse, level.placed);
   list_pairs(fine, coarse, level.to_coarse);
-  list_nodes(nodes, fine, coarse, level.to_coarse);
+  list_nodes(level.placed, fine, coarse, level.to_coarse);
   list_curves(fine, coarse, level.to_coarse);
 }
 

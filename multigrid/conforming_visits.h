@@ -15,6 +15,26 @@ inline bool is_known(const grid::ConformingCells& cells, int i, int j) {
   return n >= 0 && std::isinf(cells.node[std::size_t(n)].stiffness);
 }
 
+/// Finds columns in one row of a list that is sorted by rows; asked for in ascending order.
+class InRow {
+ public:
+  /// Row j of `column`; a row that does not exist is empty.
+  InRow(const std::vector<int>& begin, const std::vector<int>& column, int j) : column_(&column) {
+    if (j < 0 || j + 1 >= int(begin.size())) return;
+    at_ = begin[std::size_t(j)];
+    end_ = begin[std::size_t(j) + 1];
+  }
+  /// The entry of column i, −1: none.
+  int find(int i) {
+    while (at_ < end_ && (*column_)[std::size_t(at_)] < i) ++at_;
+    return at_ < end_ && (*column_)[std::size_t(at_)] == i ? at_ : -1;
+  }
+
+ private:
+  const std::vector<int>* column_;
+  int at_ = 0, end_ = 0;
+};
+
 /// visit(special cell, i, j)
 template <class F>
 void for_special(const grid::ConformingCells& cells, F&& visit) {

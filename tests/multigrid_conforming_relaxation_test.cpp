@@ -274,7 +274,7 @@ void prolong(const Scene& scene, const kernels::Unknowns<double>& from,
   }
   auto pressure = [&](int i, int j, Point centre) {
     const int c = coarse.find_cell(i / 2, j / 2);
-    return c < 0 ? from.p.at(i / 2, j / 2) : from.listed[coarse.part_at(c, 0.5 * centre)];
+    return c < 0 ? from.p.at(i / 2, j / 2) : from.listed[coarse.part_at(c, j / 2, 0.5 * centre)];
   };
   for (int j = 0; j < kNy; ++j)
     for (int i = 0; i < kNx; ++i)

@@ -129,8 +129,9 @@ struct ConformingCells {
   int find_cell(int i, int j) const;
   /// The held lattice node at (i, j), −1 if none.
   int find_node(int i, int j) const;
-  /// The part of special cell c that contains a point (in cells), the nearest one if none does.
-  int part_at(int c, Point at) const;
+  /// The part of special cell c in row j that contains a point (in cells), the nearest one if none
+  /// does.
+  int part_at(int c, int j, Point at) const;
   /// Rest position of node n of part p of special cell c in row j.
   Point rest(int c, int j, int code) const {
     if (code >= 4) return curve_node[std::size_t(code - 4)].rest;
