@@ -13,14 +13,39 @@
 namespace drumhead::kernels {
 namespace {
 
-/// Sorts the columns that were listed since row j began by parity and halves them.
-void halve(std::vector<int>& columns, std::vector<int>& begin, int j) {
-  const auto row = columns.begin() + begin[2 * std::size_t(j)];
-  const auto odd = std::stable_partition(row, columns.end(), [](int i) { return i % 2 == 0; });
-  begin[2 * std::size_t(j) + 1] = int(odd - columns.begin());
-  begin[2 * std::size_t(j) + 2] = int(columns.size());
-  std::for_each(row, columns.end(), [](int& i) { i /= 2; });
-}
+/// The special cells below and above a row of nodes, which is gone through by columns.
+template <class T>
+class CellsAround {
+ public:
+  CellsAround(const SpecialCells<T>& cells, int j) : column_(cells.column) {
+    const int* const begin = &cells.row_begin[std::size_t(j)];
+    rows_[0] = {begin[-1], begin[0], 2};
+    rows_[1] = {begin[0], begin[1], 0};
+  }
+  /// The first column from this one on, `last` at most, whose node is a corner of a cell.
+  int next(int column, int last) {
+    for (Row& row : rows_) {
+      while (row.at < row.end && column_[std::size_t(row.at)] + 1 < column) ++row.at;
+      if (row.at < row.end) last = std::min(last, std::max(column, column_[std::size_t(row.at)]));
+    }
+    return last;
+  }
+  /// visit(cell, corner) for those of the node in the column that `next` gave.
+  template <class F>
+  void visit(int column, F&& visit) const {
+    for (const Row& row : rows_)
+      for (int n = row.at; n < row.end && column_[std::size_t(n)] <= column; ++n)
+        visit(n, row.corner + column - column_[std::size_t(n)]);
+  }
+
+ private:
+  struct Row {
+    int at, end;  // from the cell on of which the node may be a corner
+    int corner;   // its western one in this row of nodes
+  };
+  const std::vector<int>& column_;
+  Row rows_[2];
+};
 
 /// visit(corner, part) for the corners of cell `n` that are a part's vertex.
 template <class T, class F>
@@ -37,47 +62,42 @@ void for_corner_vertices(const SpecialCells<T>& cells, int n, F&& visit) {
 
 template <class T>
 void SpecialRows<T>::list_near_nodes(int columns, int rows) {
-  struct Corner {
-    int column, cell, corner;  // cell −1: a known node
-  };
+  const std::vector<HeldNode<T>>& held = cells_->held;
   corner_.assign(4 * std::size_t(cells_->size()), -1);
   near_begin_.assign(std::size_t(rows) + 1, 0);
   known_begin_ = loose_begin_ = near_begin_;
   near_half_begin_.assign(2 * std::size_t(rows) + 1, 0);
-  std::vector<Corner> corners;
+  std::vector<int> odd;
   for (int j = 1; j + 1 < rows; ++j) {
-    corners.clear();
-    for (const int row : {j - 1, j})
-      for (int n = cells_->row_begin[std::size_t(row)]; n < cells_->row_begin[std::size_t(row) + 1];
-           ++n)
-        for (const int east : {0, 1})
-          corners.push_back({cells_->column[std::size_t(n)] + east, n, 2 * (j - row) + east});
-    for (int k = cells_->held_begin[std::size_t(j)]; k < cells_->held_begin[std::size_t(j) + 1];
-         ++k)
-      if (const HeldNode<T>& node = cells_->held[std::size_t(k)]; node.known())
-        corners.push_back({node.place, -1, 0});
-      else
-        corners.push_back({node.place, cells_->size(), 0});
-    std::ranges::sort(corners, {}, [](const Corner& c) { return std::pair(c.column, c.cell); });
-    for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
-      const int column = corners[first].column;
+    CellsAround<T> around(*cells_, j);
+    int k = cells_->held_begin[std::size_t(j)];
+    const int held_end = cells_->held_begin[std::size_t(j) + 1];
+    for (int column = 0;; ++column) {
+      column = around.next(column, k < held_end ? held[std::size_t(k)].place : columns);
+      if (column == columns) break;
+      bool known = false;
+      if (k < held_end && held[std::size_t(k)].place == column)
+        known = held[std::size_t(k++)].known();
+      const bool fixed = column == 0 || column + 1 == columns;
       int regular = 15;
-      for (end = first; end < corners.size() && corners[end].column == column; ++end)
-        if (corners[end].cell >= 0 && corners[end].cell < cells_->size())
-          regular &= ~(1 << corner_towards_node(corners[end].corner));
-      if (column == 0 || column + 1 == columns) continue;
-      near_half_.push_back(column);
-      if (corners[first].cell < 0) {
-        known_.push_back(column);
-        if (regular != 0) loose_.push_back(column);
+      around.visit(column, [&](int n, int corner) {
+        regular &= ~(1 << corner_towards_node(corner));
+        if (!known && !fixed)
+          corner_[4 * std::size_t(n) + std::size_t(corner)] = int(near_node_.size());
+      });
+      if (fixed) continue;
+      (column % 2 ? odd : near_half_).push_back(column / 2);
+      if (!known) {
+        near_node_.push_back({column, regular});
         continue;
       }
-      for (std::size_t c = first; c < end && corners[c].cell < cells_->size(); ++c)
-        corner_[4 * std::size_t(corners[c].cell) + std::size_t(corners[c].corner)] =
-            int(near_node_.size());
-      near_node_.push_back({column, regular});
+      known_.push_back(column);
+      if (regular != 0) loose_.push_back(column);
     }
-    halve(near_half_, near_half_begin_, j);
+    near_half_begin_[2 * std::size_t(j) + 1] = int(near_half_.size());
+    near_half_.insert(near_half_.end(), odd.begin(), odd.end());
+    near_half_begin_[2 * std::size_t(j) + 2] = int(near_half_.size());
+    odd.clear();
     near_begin_[std::size_t(j) + 1] = int(near_node_.size());
     known_begin_[std::size_t(j) + 1] = int(known_.size());
     loose_begin_[std::size_t(j) + 1] = int(loose_.size());

@@ -26,14 +26,6 @@ constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
 
 constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};  // by PartNeighbour::side
 
-/// Stiffness of the spring of lattice node (i, j), which is not known.
-template <class T>
-T spring(const SpecialCells<T>& cells, int i, int j) {
-  for (int k = cells.held_begin[std::size_t(j)]; k < cells.held_begin[std::size_t(j) + 1]; ++k)
-    if (cells.held[std::size_t(k)].place == i) return cells.held[std::size_t(k)].stiffness;
-  return T(0);
-}
-
 }  // namespace
 
 template <class T>
@@ -87,7 +79,9 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
       }
     }
   });
-  for (int j = 1; j + 1 < membrane.ux.rows; ++j)
+  for (int j = 1; j + 1 < membrane.ux.rows; ++j) {
+    const HeldNode<T>* held = cells.held.data() + cells.held_begin[std::size_t(j)];
+    const HeldNode<T>* const held_end = cells.held.data() + cells.held_begin[std::size_t(j) + 1];
     for (int n = near_begin(j); n < near_begin(j + 1); ++n) {
       const NearNode& node = near_node(n);
       NearRow<T>& row = near_[std::size_t(n)];
@@ -101,9 +95,11 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
         row.k[stencil_place(own, own ^ 1)] -= T(0.5) * mu;
         row.k[stencil_place(own, own ^ 2)] -= T(0.5) * mu;
       }
-      row.own += spring(*cells_, node.column, j);
+      while (held != held_end && held->place < node.column) ++held;
+      if (held != held_end && held->place == node.column) row.own += held->stiffness;
       row.inverse = T(1) / row.own;
     }
+  }
 }
 
 template <class T>

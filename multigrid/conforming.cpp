@@ -12,7 +12,7 @@ namespace {
 template <class T>
 void add_cell(const grid::ConformingCells& from, int c, int i, int j, T spacing,
               kernels::SpecialCells<T>& to) {
-  const double h = double(spacing);
+  const double h = double(spacing), inverse = 1.0 / h;  // exact: a power of two
   to.column.push_back(i);
   for_parts(from, c, [&](int p) {
     for_triangles(from, p, [&](const grid::PartTriangle& triangle, std::array<int, 3> code) {
@@ -20,8 +20,8 @@ void add_cell(const grid::ConformingCells& from, int c, int i, int j, T spacing,
       out.area = T(triangle.area * h * h);
       for (std::size_t a = 0; a < 3; ++a) {
         out.vertex[a] = code[a];
-        out.gx[a] = T(triangle.gradient[a].x / h);
-        out.gy[a] = T(triangle.gradient[a].y / h);
+        out.gx[a] = T(triangle.gradient[a].x * inverse);
+        out.gy[a] = T(triangle.gradient[a].y * inverse);
       }
     });
     for (int n = from.part_node_begin[std::size_t(p)]; n < from.part_node_begin[std::size_t(p) + 1];
@@ -54,7 +54,9 @@ constexpr int kRegular = -1, kOutside = -2;
 constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};
 
 /// The special cells beyond the sides (south, east, north, west) of special cell c at (i, j).
-std::array<int, 4> cells_around(const grid::ConformingCells& cells, int c, int i, int j) {
+/// `below`, `above`: the rows there.
+std::array<int, 4> cells_around(const grid::ConformingCells& cells, int c, int i, int j,
+                                InRow& below, InRow& above) {
   auto beside = [&](int other) {
     return other >= cells.cell_begin[std::size_t(j)] &&
                    other < cells.cell_begin[std::size_t(j) + 1] &&
@@ -62,19 +64,17 @@ std::array<int, 4> cells_around(const grid::ConformingCells& cells, int c, int i
                ? other
                : kRegular;
   };
-  return {j > 0 ? cells.find_cell(i, j - 1) : kOutside, i + 1 < cells.nx ? beside(c + 1) : kOutside,
-          j + 1 < cells.ny ? cells.find_cell(i, j + 1) : kOutside,
-          i > 0 ? beside(c - 1) : kOutside};
+  return {j > 0 ? below.find(i) : kOutside, i + 1 < cells.nx ? beside(c + 1) : kOutside,
+          j + 1 < cells.ny ? above.find(i) : kOutside, i > 0 ? beside(c - 1) : kOutside};
 }
 
 /// The side of special cell (i, j) that holds the piece a–b of a part's boundary: counter-clockwise
 /// from corner to corner, or to or from a crossing on the side. −1: the piece is a chord's.
 int side_of(const grid::ConformingCells& cells, int i, int j, int a, int b) {
-  constexpr std::array<std::array<int, 2>, 4> kSide{{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
-  if (a < kernels::kFirstCrossing && b < kernels::kFirstCrossing) {
-    const auto* side = std::ranges::find(kSide, std::array{a, b});
-    return side == kSide.end() ? -1 : int(side - kSide.begin());
-  }
+  constexpr std::array<std::array<int, 4>, 4> kSide{
+      {{-1, 0, -1, -1}, {-1, -1, -1, 1}, {3, -1, -1, -1}, {-1, -1, 2, -1}}};
+  if (a < kernels::kFirstCrossing && b < kernels::kFirstCrossing)
+    return kSide[std::size_t(a)][std::size_t(b)];
   const std::size_t n = std::size_t(std::max(a, b) - kernels::kFirstCrossing);
   switch (cells.curve_place[n]) {
     case grid::NodePlace::on_x_edge:
@@ -93,20 +93,37 @@ int part_across(const grid::ConformingCells& cells, int other, int side, int a, 
     return code < kernels::kFirstCrossing ? code + kMirrored[std::size_t(side)] : code;
   };
   int found = -1;
-  for_sides(cells, other, [&](int p, int, int from, int to) {
-    if (from == there(b) && to == there(a)) found = p;
+  for_sides(cells, other, [&, first = there(b), second = there(a)](int p, int, int from, int to) {
+    if (from == first && to == second) found = p;
   });
   return found;
+}
+
+/// Sorts borders, given with their rows and by parts, by row and column.
+template <class T>
+void sort_borders(int rows, const std::vector<std::pair<int, kernels::PartBorder>>& borders,
+                  kernels::SpecialCells<T>& to) {
+  to.border_begin.assign(std::size_t(rows) + 1, 0);
+  for (const auto& [row, border] : borders) ++to.border_begin[std::size_t(row) + 1];
+  std::partial_sum(to.border_begin.begin(), to.border_begin.end(), to.border_begin.begin());
+  to.border.resize(borders.size());
+  std::vector<int> next = to.border_begin;
+  for (const auto& [row, border] : borders)
+    to.border[std::size_t(next[std::size_t(row)]++)] = border;
+  for (std::size_t j = 0; j < std::size_t(rows); ++j)
+    std::ranges::stable_sort(to.border.begin() + to.border_begin[j],
+                             to.border.begin() + to.border_begin[j + 1], {},
+                             &kernels::PartBorder::column);
 }
 
 /// What parts border on: regular cells, and parts with a common piece of a side. A piece between
 /// two held nodes may be a curve's and joins no parts.
 template <class T>
 void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>& to) {
-  std::vector<std::array<int, 4>> borders;
+  std::vector<std::pair<int, kernels::PartBorder>> borders;  // row of the regular cell
   to.neighbour_begin.assign(std::size_t(from.parts()) + 1, 0);
-  for_special(from, [&](int c, int i, int j) {
-    const std::array<int, 4> around = cells_around(from, c, i, j);
+  to.neighbour.reserve(from.part_node.size());
+  auto of_cell = [&](int c, int i, int j, const std::array<int, 4>& around) {
     auto held = [&](int code) {
       return code >= kernels::kFirstCrossing ||
              from.cell_corner[std::size_t(c)][std::size_t(code)] >= 0;
@@ -118,8 +135,8 @@ void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>
       int other = -1;
       if (around[std::size_t(side)] == kRegular) {
         if (!corners) return;
-        borders.push_back({j + kNorth[std::size_t(side)], i + kEast[std::size_t(side)], p,
-                           int(to.neighbour.size())});
+        borders.push_back({j + kNorth[std::size_t(side)],
+                           {i + kEast[std::size_t(side)], p, int(to.neighbour.size())}});
       } else {
         if (held(a) && held(b)) return;
         other = part_across(from, around[std::size_t(side)], side, a, b);
@@ -128,15 +145,18 @@ void list_neighbours(const grid::ConformingCells& from, kernels::SpecialCells<T>
       to.neighbour.push_back({other, n, side});
       ++to.neighbour_begin[std::size_t(p) + 1];
     });
-  });
-  std::ranges::sort(borders);
-  to.border_begin.assign(std::size_t(from.ny) + 1, 0);
-  for (const auto& [row, column, part, neighbour] : borders) {
-    ++to.border_begin[std::size_t(row) + 1];
-    to.border.push_back({column, part, neighbour});
+  };
+  for (int j = 0; j < from.ny; ++j) {
+    InRow below(from.cell_begin, from.cell_column, j - 1),
+        above(from.cell_begin, from.cell_column, j + 1);
+    for (int c = from.cell_begin[std::size_t(j)]; c < from.cell_begin[std::size_t(j) + 1]; ++c) {
+      const int i = from.cell_column[std::size_t(c)];
+      of_cell(c, i, j, cells_around(from, c, i, j, below, above));
+    }
   }
-  for (std::vector<int>* begin : {&to.neighbour_begin, &to.border_begin})
-    std::partial_sum(begin->begin(), begin->end(), begin->begin());
+  std::partial_sum(to.neighbour_begin.begin(), to.neighbour_begin.end(),
+                   to.neighbour_begin.begin());
+  sort_borders(from.ny, borders, to);
 }
 
 template <class T>
@@ -161,7 +181,10 @@ template <class T>
 kernels::SpecialCells<T> special_cells(const grid::ConformingCells& from, T spacing) {
   kernels::SpecialCells<T> to;
   to.row_begin = from.cell_begin;
-  to.part_begin = to.triangle_begin = to.vertex_begin = {0};
+  for (auto* begin : {&to.part_begin, &to.triangle_begin, &to.vertex_begin}) {
+    begin->reserve(from.part_area.size() + 1);
+    begin->push_back(0);
+  }
   to.column.reserve(from.cell_column.size());
   to.triangle.reserve(from.triangle.size());
   to.vertex.reserve(from.part_node.size());
