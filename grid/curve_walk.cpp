@@ -18,15 +18,20 @@ constexpr double kBoundaryTip = 0.25;
 // Tangents that turn by more than this at a joint of segments make a corner: cos 30°.
 constexpr double kCornerCosine = 0.866;
 
+/// Of the tangent: to the first control point that differs from the end.
 Point direction(const CubicBezier& curve, bool at_end) {
-  // The first control point that differs from the end gives the tangent.
   for (std::size_t n = 1; n < 4; ++n) {
     const Point d =
         at_end ? curve.control[3] - curve.control[3 - n] : curve.control[n] - curve.control[0];
-    const double size = length(d);
-    if (size > 1e-12) return (1.0 / size) * d;
+    if (dot(d, d) > 1e-24) return d;
   }
   return {};
+}
+
+bool is_corner(Point before, Point after) {
+  const double product = dot(before, after);
+  return product <= 0.0 || product * product < kCornerCosine * kCornerCosine * dot(before, before) *
+                                                   dot(after, after);
 }
 
 double arc_between(const CubicBezier& curve, double t0, double t1) {
@@ -93,30 +98,28 @@ void set_events(CurveWalk& walk, const Lattice& lattice) {
 class Walker {
  public:
   Walker(const CurvePair& curve, const Lattice& lattice) : curve_(curve), lattice_(lattice) {
-    segments_ = matched(curve);
-    for (SegmentPair& pair : segments_)
-      for (std::size_t n = 0; n < 4; ++n) {
-        pair.source.control[n] = lattice.to_cells(pair.source.control[n]);
-        pair.target.control[n] = lattice.to_cells(pair.target.control[n]);
-      }
+    if (!one_to_one(curve)) matched_ = matched(curve);
   }
 
   CurveWalk run() {
-    const Point gap = segments_.front().source.at(0.0) - segments_.back().source.at(1.0);
-    walk_.closed = length(gap) < kJoined;
-    for (std::size_t n = 0; n < segments_.size(); ++n) {
-      if (n > 0) joint(segments_[n - 1], segments_[n]);
-      segment(segments_[n]);
+    const std::size_t count = matched_.empty() ? curve_.source.size() : matched_.size();
+    const CubicBezier first = source(0);
+    CubicBezier before = source(count - 1);
+    walk_.closed = length(first.at(0.0) - before.at(1.0)) < kJoined;
+    for (std::size_t n = 0; n < count; ++n) {
+      const CubicBezier curve = source(n);
+      if (n > 0) joint(before, curve, n);
+      segment(curve, n);
+      before = curve;
     }
-    const SegmentPair& last = segments_.back();
     if (walk_.closed) {
-      joint(last, segments_.front());
-      move_to(start_, last.source.at(1.0), last.target.at(1.0));
+      joint(before, first, 0);
+      move_to(start_, before.at(1.0), count - 1, 1.0);
     } else {
-      tip(last.source.at(1.0), last.target.at(1.0));
+      tip(before.at(1.0), count - 1, 1.0);
     }
     walk_.length = arc_;
-    walk_.middle = middle();
+    walk_.middle = middle(count / 2);
     set_events(walk_, lattice_);
     return std::move(walk_);
   }
@@ -124,22 +127,46 @@ class Walker {
  private:
   EdgeIndex node(int i, int j) const { return EdgeIndex(j) * (lattice_.nx + 1) + i; }
 
-  void segment(const SegmentPair& pair) {
-    find_crossings(pair.source, crossings_);
+  // Segment n in cells.
+  CubicBezier source(std::size_t n) const {
+    return in_cells(matched_.empty() ? curve_.source[n] : matched_[n].source);
+  }
+  CubicBezier target(std::size_t n) const {
+    return in_cells(matched_.empty() ? curve_.target[n] : matched_[n].target);
+  }
+  CubicBezier in_cells(CubicBezier curve) const {
+    for (Point& p : curve.control) p = lattice_.to_cells(p);
+    return curve;
+  }
+
+  void segment(const CubicBezier& curve, std::size_t n) {
+    if (started_ && stays(curve)) {
+      arc_ += arc_between(curve, 0.0, 1.0);
+      return;
+    }
+    find_crossings(curve, crossings_);
     crossings_.push_back(1.0);
     double t0 = 0.0;
     for (const double t1 : crossings_) {
       if (t1 <= t0) continue;
-      const CellIndex cell = cell_of(pair.source.at(0.5 * (t0 + t1)));
+      const CellIndex cell = cell_of(curve.at(0.5 * (t0 + t1)));
       if (!started_) {
         started_ = true;
         start_ = cell_ = cell;
-        if (!walk_.closed) tip(pair.source.at(0.0), pair.target.at(0.0));
+        if (!walk_.closed) tip(curve.at(0.0), n, 0.0);
       }
-      move_to(cell, pair.source.at(t0), pair.target.at(t0));
-      arc_ += arc_between(pair.source, t0, t1);
+      if (cell != cell_) move_to(cell, curve.at(t0), n, t0);
+      arc_ += arc_between(curve, t0, t1);
       t0 = t1;
     }
+  }
+
+  /// Whether a segment has no crossings and lies in the current cell, as most of a polyline do.
+  bool stays(const CubicBezier& curve) const {
+    return std::ranges::all_of(curve.control, [this](Point p) {
+      return p.x - kSnap >= cell_.i && p.x + kSnap < cell_.i + 1 && p.y - kSnap >= cell_.j &&
+             p.y + kSnap < cell_.j + 1;
+    });
   }
 
   CellIndex cell_of(Point at) const {
@@ -149,46 +176,41 @@ class Walker {
   }
 
   /// Crosses the edges between the current cell and the next one at a point: one edge, or two that
-  /// meet in a node where the curve goes through it.
-  void move_to(CellIndex next, Point source, Point target) {
+  /// meet in a node where the curve goes through it. The point lies at t of segment n.
+  void move_to(CellIndex next, Point source, std::size_t n, double t) {
+    const Point to = target(n).at(t);
     while (cell_.i != next.i) {
       const int step = next.i > cell_.i ? 1 : -1, line = std::max(cell_.i, cell_.i + step);
       cell_.i += step;
       const double along = std::clamp(source.y - cell_.j, 0.0, 1.0);
-      walk_.all.push_back({2 * node(line, cell_.j) + 1,
-                           along,
-                           cell_,
-                           {double(line), cell_.j + along},
-                           target,
-                           arc_});
+      walk_.all.push_back(
+          {2 * node(line, cell_.j) + 1, along, cell_, {double(line), cell_.j + along}, to, arc_});
     }
     while (cell_.j != next.j) {
       const int step = next.j > cell_.j ? 1 : -1, line = std::max(cell_.j, cell_.j + step);
       cell_.j += step;
       const double along = std::clamp(source.x - cell_.i, 0.0, 1.0);
       walk_.all.push_back(
-          {2 * node(cell_.i, line), along, cell_, {cell_.i + along, double(line)}, target, arc_});
+          {2 * node(cell_.i, line), along, cell_, {cell_.i + along, double(line)}, to, arc_});
     }
   }
 
-  void tip(Point source, Point target) {
-    walk_.all.push_back({kNoEdge, 0.0, cell_, source, target, arc_});
+  void tip(Point source, std::size_t n, double t) {
+    walk_.all.push_back({kNoEdge, 0.0, cell_, source, target(n).at(t), arc_});
   }
 
-  void joint(const SegmentPair& before, const SegmentPair& after) {
-    if (dot(direction(before.source, true), direction(after.source, false)) < kCornerCosine)
-      walk_.all.push_back({kNoEdge, 0.0, cell_, after.source.at(0.0), after.target.at(0.0), arc_});
+  void joint(const CubicBezier& before, const CubicBezier& after, std::size_t n) {
+    if (is_corner(direction(before, true), direction(after, false))) tip(after.at(0.0), n, 0.0);
   }
 
-  CurveEvent middle() const {
-    const SegmentPair& pair = segments_[segments_.size() / 2];
-    const Point source = pair.source.at(0.5);
-    return {kNoEdge, 0.0, cell_of(source), source, pair.target.at(0.5), 0.5 * arc_};
+  CurveEvent middle(std::size_t n) const {
+    const Point at = source(n).at(0.5);
+    return {kNoEdge, 0.0, cell_of(at), at, target(n).at(0.5), 0.5 * arc_};
   }
 
   const CurvePair& curve_;
   const Lattice& lattice_;
-  std::vector<SegmentPair> segments_;
+  std::vector<SegmentPair> matched_;  // empty: the curve's own are one to one
   std::vector<double> crossings_;
   CurveWalk walk_;
   CellIndex cell_, start_;

@@ -37,15 +37,15 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
   for (const grid::CurvePair& curve : curves) {
     CurveReport report{.name = curve.name};
     double squares = 0.0;
-    for (const grid::SegmentPair& pair : grid::matched(curve)) {
-      const double length = grid::arc_length(pair.source);
+    grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& target) {
+      const double length = grid::arc_length(from);
       const int points = std::max(1, int(std::ceil(4.0 * length / solution.lattice.cell_px)));
       for (int n = 0; n < points; ++n) {
         const double t = (n + 0.5) / points;
-        const grid::Point source = pair.source.at(t);
+        const grid::Point source = from.at(t);
         const kernels::Position to = kernels::forward_position(map, {source.x, source.y});
-        const double gap = grid::length(grid::Point{to.x, to.y} - pair.target.at(t));
-        const double ds = grid::length(pair.source.derivative(t)) / points;
+        const double gap = grid::length(grid::Point{to.x, to.y} - target.at(t));
+        const double ds = grid::length(from.derivative(t)) / points;
         squares += gap * gap * ds;
         report.length_px += ds;
         if (gap > report.gap_max_px) {
@@ -53,7 +53,7 @@ std::vector<CurveReport> curve_gaps(const Solution& solution,
           report.worst_px = source;
         }
       }
-    }
+    });
     report.gap_rms_px = report.length_px > 0.0 ? std::sqrt(squares / report.length_px) : 0.0;
     reports.push_back(report);
   }
