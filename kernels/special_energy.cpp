@@ -37,67 +37,70 @@ void for_own_jumps(const SpecialRows<T>& rows, int p, F&& visit) {
       visit(strength, cells.neighbour[std::size_t(k)].part);
 }
 
-/// What regular cell q of sw, se, nw, ne around node (i, j) adds to −∂E/∂x̂ there.
+/// −∂E/∂x̂ of the regular cells around near node (i, j), added without branches, which nothing
+/// foretells.
 template <class T>
-Vector2<T> regular_force(const Membrane<T>& m, int i, int j, int q) {
-  const int dx = q & 1 ? 1 : -1, dy = q & 2 ? 1 : -1;  // towards the cell
-  const int ci = dx > 0 ? i : i - 1, cj = dy > 0 ? j : j - 1;
-  const T half_mu = T(0.5) * mu_at(m, ci, cj);
-  auto difference = [&](const Plane<const T>& u, int di, int dj) {
-    return u.at(i + di, j + dj) - u.at(i, j);
-  };
-  const T h = m.spacing;
-  const Vector2<T> along{h * T(dx) + difference(m.ux, dx, 0), difference(m.uy, dx, 0)};
-  const Vector2<T> up{difference(m.ux, 0, dy), h * T(dy) + difference(m.uy, 0, dy)};
-  Vector2<T> force{half_mu * (along.x + up.x), half_mu * (along.y + up.y)};
-  if (m.pressure) {
-    // A J = ½ (next − previous) rotated · x̂ + …; the neighbour along x follows at corners 00, 11.
-    const T half = T(dx * dy) * T(0.5) * m.pressure.at(ci, cj);
-    force.x -= half * (along.y - up.y);
-    force.y += half * (along.x - up.x);
+Vector2<T> regular_force(const Membrane<T>& m, const NearNode& node, int j) {
+  const int i = node.column;
+  const T h = m.spacing, x = m.ux.at(i, j), y = m.uy.at(i, j);
+  // To the neighbours west and east, south and north.
+  const Vector2<T> along[2] = {{-h + (m.ux.at(i - 1, j) - x), m.uy.at(i - 1, j) - y},
+                               {h + (m.ux.at(i + 1, j) - x), m.uy.at(i + 1, j) - y}};
+  const Vector2<T> up[2] = {{m.ux.at(i, j - 1) - x, -h + (m.uy.at(i, j - 1) - y)},
+                            {m.ux.at(i, j + 1) - x, h + (m.uy.at(i, j + 1) - y)}};
+  Vector2<T> sum{T(0), T(0)};
+  for (int q = 0; q < 4; ++q) {
+    const int ci = i - 1 + (q & 1), cj = j - 1 + (q >> 1);
+    const T half_mu = T(0.5) * mu_at(m, ci, cj), regular = T(node.regular >> q & 1);
+    const Vector2<T> a = along[q & 1], b = up[q >> 1];
+    Vector2<T> force{half_mu * (a.x + b.x), half_mu * (a.y + b.y)};
+    if (m.pressure) {
+      // A J = ½ (next − previous) rotated · x̂ + …; the neighbour along x follows at corners 00, 11.
+      const T half = T(q == 0 || q == 3 ? 0.5 : -0.5) * m.pressure.at(ci, cj);
+      force.x -= half * (a.y - b.y);
+      force.y += half * (a.x - b.x);
+    }
+    sum.x += regular * force.x;
+    sum.y += regular * force.y;
   }
-  return force;
+  return sum;
 }
 
 template <class T>
-void add_triangle_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int i, int j) {
-  const SpecialRows<T>& rows = *m.special;
-  const SpecialCells<T>& cells = rows.cells();
-  const T mu = mu_at(m, i, j);
+void add_triangle_force(const SpecialCells<T>& cells, const CellState<T>& u, T mu, int n,
+                        CellForce<T>& force) {
   for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
        ++t) {
     const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
-    const Gradient<T> g = gradient<T>(
-        triangle, 3, [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); });
+    const Gradient<T> g = gradient<T>(triangle, 3, u);
     const T scale = mu * triangle.area;
     for (std::size_t a = 0; a < 3; ++a) {
       const T gx = triangle.gx[a], gy = triangle.gy[a];
-      add_vertex_force(
-          f, rows, n, i, j, triangle.vertex[a],
-          {-(scale * (gx + (g.xx * gx + g.xy * gy))), -(scale * (gy + (g.yx * gx + g.yy * gy)))});
+      force.add(triangle.vertex[a], {-(scale * (gx + (g.xx * gx + g.xy * gy))),
+                                     -(scale * (gy + (g.yx * gx + g.yy * gy)))});
     }
   }
 }
 
 /// True if the part's area is negative.
 template <class T>
-bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, int i, int j) {
+bool add_part_force(const Membrane<T>& m, const CellState<T>& u, T compliance, int p,
+                    CellForce<T>& force, const Unknowns<T>& f) {
   const SpecialRows<T>& rows = *m.special;
   const SpecialCells<T>& cells = rows.cells();
-  auto displacement = [&](int vertex) { return at_vertex(cells, m.ux, m.uy, i, j, vertex); };
   const int begin = cells.vertex_begin[std::size_t(p)],
             end = cells.vertex_begin[std::size_t(p) + 1];
   const T half = T(0.5) * m.listed[p];
   for (int v = begin; v < end; ++v) {
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
-    const Vector2<T> to = displacement(next.vertex), from = displacement(previous.vertex);
-    add_vertex_force(f, rows, n, i, j, cells.vertex[std::size_t(v)].vertex,
-                     {-(half * ((next.y - previous.y) + (to.y - from.y))),
-                      half * ((next.x - previous.x) + (to.x - from.x))});
+    const Vector2<T> to = u(next.vertex), from = u(previous.vertex);
+    force.add(cells.vertex[std::size_t(v)].vertex,
+              {-(half * ((next.y - previous.y) + (to.y - from.y))),
+               half * ((next.x - previous.x) + (to.x - from.x))});
   }
-  const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, displacement);
-  f.listed[p] = area * compliance_at(m, i, j) * m.listed[p] - change;
+  const T area = cells.area[std::size_t(p)], change = volume_change(cells, p, u);
+  f.listed[p] = area * compliance * m.listed[p] - change;
   for_own_jumps(rows, p, [&](T strength, int other) {
     f.listed[p] += strength * (m.listed[p] - m.listed[other]);
   });
@@ -105,20 +108,6 @@ bool add_part_force(const Membrane<T>& m, const Unknowns<T>& f, int n, int p, in
 }
 
 }  // namespace
-
-template <class T>
-void add_vertex_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j,
-                      int vertex, Vector2<T> force) {
-  if (vertex >= kFirstCrossing) {
-    const std::size_t c = std::size_t(vertex - kFirstCrossing);
-    if (!rows.soft() || rows.cells().crossing[c].known()) return;
-    f.curve[2 * c] += force.x;
-    f.curve[2 * c + 1] += force.y;
-  } else if (rows.unknown_corner(n, vertex) >= 0) {
-    f.x.at(i + (vertex & 1), j + (vertex >> 1)) += force.x;
-    f.y.at(i + (vertex & 1), j + (vertex >> 1)) += force.y;
-  }
-}
 
 template <class T>
 void add_spring_force(const SpecialCells<T>& cells, const Unknowns<T>& f) {
@@ -149,25 +138,26 @@ int special_force(const Membrane<T>& m, const Unknowns<T>& f) {
   for (int j = 1; j + 1 < m.ux.rows; ++j) {
     for (const int i : rows.known(j)) f.x.at(i, j) = f.y.at(i, j) = T(0);
     for (int n = rows.near_begin(j); n < rows.near_begin(j + 1); ++n) {
-      const NearNode& row = rows.near_node(n);
-      Vector2<T> sum{T(0), T(0)};
-      for (int q = 0; q < 4; ++q) {
-        if (!(row.regular >> q & 1)) continue;
-        const Vector2<T> force = regular_force(m, row.column, j, q);
-        sum = {sum.x + force.x, sum.y + force.y};
-      }
-      f.x.at(row.column, j) = sum.x;
-      f.y.at(row.column, j) = sum.y;
+      const NearNode& node = rows.near_node(n);
+      const Vector2<T> sum = regular_force(m, node, j);
+      f.x.at(node.column, j) = sum.x;
+      f.y.at(node.column, j) = sum.y;
     }
   }
   add_spring_force(rows.cells(), f);
   for_special(rows.cells(), [&](int n, int i, int j) {
-    add_triangle_force(m, f, n, i, j);
-    if (!m.pressure) return;
-    f.p.at(i, j) = T(0);
-    bool any = false;
-    for_parts(rows.cells(), n, [&](int p) { any |= add_part_force(m, f, n, p, i, j); });
-    inverted += any;
+    const CellState<T> u(rows.cells(), m.ux, m.uy, i, j);
+    CellForce<T> force(f, rows, n, i, j);
+    add_triangle_force(rows.cells(), u, mu_at(m, i, j), n, force);
+    if (m.pressure) {
+      const T compliance = compliance_at(m, i, j);
+      f.p.at(i, j) = T(0);
+      bool any = false;
+      for_parts(rows.cells(), n,
+                [&](int p) { any |= add_part_force(m, u, compliance, p, force, f); });
+      inverted += any;
+    }
+    force.store();
   });
   return inverted;
 }
@@ -227,17 +217,7 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
   const SpecialCells<T>& cells = m.special->cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
     const int i = cells.column[std::size_t(n)];
-    auto displacement = [&](int vertex) {
-      Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, vertex);
-      if (d.x && vertex < kFirstCrossing) {
-        u.x += step * d.x.at(i + (vertex & 1), j + (vertex >> 1));
-        u.y += step * d.y.at(i + (vertex & 1), j + (vertex >> 1));
-      } else if (d.curve && vertex >= kFirstCrossing) {
-        u.x += step * d.curve[2 * (vertex - kFirstCrossing)];
-        u.y += step * d.curve[2 * (vertex - kFirstCrossing) + 1];
-      }
-      return u;
-    };
+    const CellState<T> displacement(cells, m.ux, m.uy, i, j, d, step);
     for (int t = cells.triangle_begin[std::size_t(n)]; t < cells.triangle_begin[std::size_t(n) + 1];
          ++t) {
       const Triangle<T>& triangle = cells.triangle[std::size_t(t)];
@@ -259,8 +239,6 @@ void add_special_energy(const Membrane<T>& m, const Unknowns<const T>& d, T step
 }
 
 #define DRUMHEAD_INSTANTIATE(T)                                                                    \
-  template void add_vertex_force(const Unknowns<T>&, const SpecialRows<T>&, int, int, int, int,    \
-                                 Vector2<T>);                                                      \
   template void add_spring_force(const SpecialCells<T>&, const Unknowns<T>&);                      \
   template void add_spring_energy(const SpecialRows<T>&, const Unknowns<const T>&, T, EnergySums&, \
                                   int);                                                            \

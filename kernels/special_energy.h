@@ -13,10 +13,43 @@ namespace drumhead::kernels {
 template <class T>
 int special_force(const Membrane<T>& membrane, const Unknowns<T>& f);
 
-/// Adds to the force on a vertex of special cell n = (i, j); those on known nodes are not kept.
+/// Adds to the forces on the vertices of special cell n = (i, j), once `store` is called; those on
+/// known nodes are not kept.
 template <class T>
-void add_vertex_force(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j,
-                      int vertex, Vector2<T> force);
+class CellForce {
+ public:
+  CellForce(const Unknowns<T>& f, const SpecialRows<T>& rows, int n, int i, int j)
+      : f_(f), rows_(rows), n_(n), i_(i), j_(j) {
+    for (int c = 0; c < 4; ++c) corner_[c] = {x(c), y(c)};
+  }
+  void add(int vertex, Vector2<T> force) {
+    if (vertex < kFirstCrossing) {
+      corner_[vertex].x += force.x;
+      corner_[vertex].y += force.y;
+      return;
+    }
+    const std::size_t c = std::size_t(vertex - kFirstCrossing);
+    if (!rows_.soft() || rows_.cells().crossing[c].known()) return;
+    f_.curve[2 * c] += force.x;
+    f_.curve[2 * c + 1] += force.y;
+  }
+  void store() const {
+    for (int c = 0; c < 4; ++c) {
+      if (rows_.unknown_corner(n_, c) < 0) continue;
+      x(c) = corner_[c].x;
+      y(c) = corner_[c].y;
+    }
+  }
+
+ private:
+  T& x(int corner) const { return f_.x.at(i_ + (corner & 1), j_ + (corner >> 1)); }
+  T& y(int corner) const { return f_.y.at(i_ + (corner & 1), j_ + (corner >> 1)); }
+
+  const Unknowns<T>& f_;
+  const SpecialRows<T>& rows_;
+  int n_, i_, j_;
+  Vector2<T> corner_[4];
+};
 /// Forces of the springs of soft curves, before all others on curve nodes, after the regular ones
 /// on lattice nodes.
 template <class T>

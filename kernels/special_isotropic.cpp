@@ -227,9 +227,9 @@ void special_isotropic_force(const Membrane<T>& m, const Unknowns<T>& f) {
   }
   for_special(rows.cells(), [&](int n, int i, int j) {
     const CellLaw<T> law(m, i, j);
-    law.for_points(n, visit(law, [&](int vertex, T x, T y) {
-                     add_vertex_force(f, rows, n, i, j, vertex, Vector2<T>{x, y});
-                   }));
+    CellForce<T> force(f, rows, n, i, j);
+    law.for_points(n, visit(law, [&](int vertex, T x, T y) { force.add(vertex, {x, y}); }));
+    force.store();
   });
 }
 
@@ -239,17 +239,7 @@ void add_special_isotropic_energy(const Membrane<T>& m, const Unknowns<const T>&
   const SpecialCells<T>& cells = m.special->cells();
   for (int n = cells.row_begin[std::size_t(j)]; n < cells.row_begin[std::size_t(j) + 1]; ++n) {
     const int i = cells.column[std::size_t(n)];
-    auto displacement = [&](int vertex) {
-      Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, vertex);
-      if (d.x && vertex < kFirstCrossing) {
-        u.x += step * d.x.at(i + (vertex & 1), j + (vertex >> 1));
-        u.y += step * d.y.at(i + (vertex & 1), j + (vertex >> 1));
-      } else if (d.curve && vertex >= kFirstCrossing) {
-        u.x += step * d.curve[2 * (vertex - kFirstCrossing)];
-        u.y += step * d.curve[2 * (vertex - kFirstCrossing) + 1];
-      }
-      return u;
-    };
+    const CellState<T> displacement(cells, m.ux, m.uy, i, j, d, step);
     auto det = [](const PointState<T>& at) {
       return double(at.f11) * double(at.f22) - double(at.f12) * double(at.f21);
     };

@@ -13,16 +13,21 @@
 namespace drumhead::kernels {
 namespace {
 
-/// Place of corner `other` of a cell, seen from its corner `own`: 0…3 in a NearRow, 4…7 in a
-/// DiagonalRow, kOwn the node itself.
-constexpr std::size_t kDiagonal = 4, kOwn = 8;
+/// Place of vertex `other` of a cell, seen from its corner `own`: 0…3 in a NearRow, 4…7 in a
+/// DiagonalRow, kOwn the node itself, kNone where it is no corner.
+constexpr std::size_t kDiagonal = 4, kOwn = 8, kNone = 9;
 std::size_t stencil_place(int own, int other) {
-  constexpr std::array<std::size_t, 9> kPlace{4, 2, 5, 0, kOwn, 1, 6, 3, 7};
-  return kPlace[std::size_t(4 + ((other & 1) - (own & 1)) + 3 * ((other >> 1) - (own >> 1)))];
+  constexpr std::size_t kPlace[4][5] = {{kOwn, 1, 3, 7, kNone},
+                                        {0, kOwn, 6, 3, kNone},
+                                        {2, 5, kOwn, 1, kNone},
+                                        {4, 2, 0, kOwn, kNone}};
+  return kPlace[own][std::min(other, kFirstCrossing)];
 }
 
-/// Corners of a cell that follow and precede one in the sense 00, 10, 11, 01.
-constexpr std::array<int, 4> kNext{1, 3, 0, 2}, kPrevious{2, 0, 3, 1};
+/// Corners of a cell that follow and precede one in the sense 00, 10, 11, 01, and their
+/// stencil_place.
+constexpr int kNext[4] = {1, 3, 0, 2}, kPrevious[4] = {2, 0, 3, 1};
+constexpr std::size_t kNextPlace[4] = {1, 3, 2, 0}, kPreviousPlace[4] = {3, 0, 1, 2};
 
 constexpr std::array<int, 4> kEast{0, 1, 0, -1}, kNorth{-1, 0, 1, 0};  // by PartNeighbour::side
 
@@ -88,8 +93,10 @@ void SpecialRows<T>::add_stiffness(const Membrane<T>& membrane) {
       row.place = row_place(membrane.ux, node.column);
       row.west = row_place(membrane.ux, node.column - 1);
       for (int q = 0; q < 4; ++q) {
-        if (!(node.regular >> q & 1)) continue;
         const int own = corner_towards_node(q);
+        if (membrane.pressure)
+          row.part[q] = -1 - row_place(membrane.pressure, node.column - (own & 1));
+        if (!(node.regular >> q & 1)) continue;
         const T mu = mu_at(membrane, node.column - (own & 1), j - (own >> 1));
         row.own += mu;
         row.k[stencil_place(own, own ^ 1)] -= T(0.5) * mu;
@@ -111,29 +118,31 @@ void SpecialRows<T>::linearise_regular(const Membrane<T>& m) {
       NearRow<T>& row = near_[std::size_t(n)];
       std::ranges::fill(row.g, T(0));
       if (!m.pressure) continue;
+      const int i = node.column;
+      auto at = [&](int x, int y) { return Vector2<T>{m.ux.at(x, y), m.uy.at(x, y)}; };
+      const Vector2<T> u[4] = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
+      // Without branches, which nothing foretells; what special cells have here is written later.
       for (int q = 0; q < 4; ++q) {
-        if (row.part[q] < 0)
-          row.part[q] = -1 - row_place(m.pressure, node.column - (corner_towards_node(q) & 1));
-        if (!(node.regular >> q & 1)) continue;
-        const int own = corner_towards_node(q), i0 = node.column - (own & 1), j0 = j - (own >> 1);
-        const int next = kNext[std::size_t(own)], previous = kPrevious[std::size_t(own)];
-        const T half = T(0.5) * clamped(m, m.pressure.at(i0, j0), i0, j0);
-        row.g[stencil_place(own, next)] += half;
-        row.g[stencil_place(own, previous)] -= half;
-        auto place = [&](int corner) {
-          const int east = corner & 1, north = corner >> 1;
-          return Vector2<T>{m.spacing * T(east) + m.ux.at(i0 + east, j0 + north),
-                            m.spacing * T(north) + m.uy.at(i0 + east, j0 + north)};
+        const int own = corner_towards_node(q), i0 = i - (own & 1), j0 = j - (own >> 1);
+        const T regular = T(node.regular >> q & 1);
+        const T half = regular * (T(0.5) * clamped(m, m.pressure.at(i0, j0), i0, j0));
+        row.g[kNextPlace[own]] += half;
+        row.g[kPreviousPlace[own]] -= half;
+        auto place = [&](std::size_t neighbour, int corner) {
+          return Vector2<T>{m.spacing * T(corner & 1) + u[neighbour].x,
+                            m.spacing * T(corner >> 1) + u[neighbour].y};
         };
-        const Vector2<T> to = place(next), from = place(previous);
-        row.bx[q] = T(0.5) * (to.y - from.y);
-        row.by[q] = T(-0.5) * (to.x - from.x);
+        const Vector2<T> to = place(kNextPlace[own], kNext[own]),
+                         from = place(kPreviousPlace[own], kPrevious[own]);
+        row.bx[q] = regular * (T(0.5) * (to.y - from.y));
+        row.by[q] = regular * (T(-0.5) * (to.x - from.x));
       }
     }
 }
 
 template <class T>
-void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, int j) {
+void SpecialRows<T>::linearise_part(const Membrane<T>& m, const CellState<T>& u, int cell, int part,
+                                    int j) {
   const SpecialCells<T>& cells = *cells_;
   const int i = cells.column[std::size_t(cell)];
   PartRow<T>& row = part_[std::size_t(part)];
@@ -148,17 +157,17 @@ void SpecialRows<T>::linearise_part(const Membrane<T>& m, int cell, int part, in
     NearRow<T>& node = near_[std::size_t(near)];
     const PartVertex<T>& next = cells.vertex[std::size_t(v + 1 < end ? v + 1 : begin)];
     const PartVertex<T>& previous = cells.vertex[std::size_t(v > begin ? v - 1 : end - 1)];
+    // Without branches, which nothing foretells.
     DiagonalRow<T>* const diagonals = diagonals_of(near);
-    for (const auto& [other, g] : {std::pair{next.vertex, half}, {previous.vertex, -half}}) {
-      if (other >= kFirstCrossing) continue;
+    T nowhere[4] = {};
+    T* const g[3] = {node.g, diagonals ? diagonals->g : nowhere, nowhere};
+    auto at = [&](int other) -> T& {
       const std::size_t place = stencil_place(own, other);
-      if (place < kDiagonal)
-        node.g[place] += g;
-      else if (diagonals)
-        diagonals->g[place - kDiagonal] += g;
-    }
-    const Vector2<T> to = at_vertex(cells, m.ux, m.uy, i, j, next.vertex),
-                     from = at_vertex(cells, m.ux, m.uy, i, j, previous.vertex);
+      return g[place / 4][place % 4];
+    };
+    at(next.vertex) += half;
+    at(previous.vertex) -= half;
+    const Vector2<T> to = u(next.vertex), from = u(previous.vertex);
     const T bx = T(0.5) * ((next.y - previous.y) + (to.y - from.y));
     const T by = T(-0.5) * ((next.x - previous.x) + (to.x - from.x));
     row.bx[own] = bx;
@@ -196,62 +205,53 @@ void SpecialRows<T>::set_own_jumps(const Membrane<T>& m) {
   });
 }
 
-/// The equations' own jumps, and the jump term of pressure_jump.h between parts, and between parts
-/// and regular cells.
+/// Makes room for the equations' own jumps, and for the jump term of pressure_jump.h between parts,
+/// and between parts and regular cells.
 template <class T>
-void SpecialRows<T>::set_jumps(const Membrane<T>& m) {
-  const SpecialCells<T>& cells = *cells_;
-  jump_.assign(cells.neighbour.size(), T(0));
+void SpecialRows<T>::clear_jumps(const Membrane<T>& m) {
+  jump_.assign(cells_->neighbour.size(), T(0));
   has_border_jumps_ = m.pressure_jump != T(0);
   has_jumps_ = has_border_jumps_ || !own_jump_.empty();
   part_jumps_.assign(has_jumps_ ? part_.size() : 0, {});
-  if (!has_jumps_) return;
   if (has_border_jumps_ && border_begin_.empty()) list_borders();
-  for_special(cells, [&](int n, int i, int j) {
-    for_parts(cells, n, [&](int p) {
-      std::ranges::fill(part_jumps_[std::size_t(p)].part, p);
-      for (int k = cells.neighbour_begin[std::size_t(p)];
-           k < cells.neighbour_begin[std::size_t(p) + 1]; ++k)
-        set_jump(m, std::size_t(p), k, i, j);
-    });
-  });
-  for (BorderJump<T>& border : border_) border.jump = jump(border.neighbour);
 }
 
-/// That of pressure_jump.h across the piece of side that part p of cell (i, j) shares with `other`.
+/// The jump of pressure_jump.h across the piece of side that part p of cell (i, j) shares with
+/// `other`.
 template <class T>
-T SpecialRows<T>::coarse_jump(const Membrane<T>& m, std::size_t p, const PartNeighbour& other,
-                              int i, int j) const {
+T SpecialRows<T>::coarse_jump(const Membrane<T>& m, const CellState<T>& u, std::size_t p,
+                              const PartNeighbour& other, int i, int j) const {
   const SpecialCells<T>& cells = *cells_;
   const int begin = cells.vertex_begin[p], end = cells.vertex_begin[p + 1];
   const PartVertex<T>& from = cells.vertex[std::size_t(other.vertex)];
   const PartVertex<T>& to =
       cells.vertex[std::size_t(other.vertex + 1 < end ? other.vertex + 1 : begin)];
-  const Vector2<T> u = at_vertex(cells, m.ux, m.uy, i, j, from.vertex),
-                   v = at_vertex(cells, m.ux, m.uy, i, j, to.vertex);
-  const T ex = (to.x - from.x) + (v.x - u.x), ey = (to.y - from.y) + (v.y - u.y);
+  const Vector2<T> v = u(from.vertex), w = u(to.vertex);
+  const T ex = (to.x - from.x) + (w.x - v.x), ey = (to.y - from.y) + (w.y - v.y);
   const std::size_t side = std::size_t(other.side);
   const T mu = mu_at(m, i, j) + mu_at(m, i + kEast[side], j + kNorth[side]);
   return T(0.125) * m.pressure_jump * (ex * ex + ey * ey) / mu;
 }
 
 template <class T>
-void SpecialRows<T>::set_jump(const Membrane<T>& m, std::size_t p, int k, int i, int j) {
+void SpecialRows<T>::set_jumps(const Membrane<T>& m, const CellState<T>& u, std::size_t p, int i,
+                               int j) {
   const SpecialCells<T>& cells = *cells_;
-  const PartNeighbour& other = cells.neighbour[std::size_t(k)];
-  const int side = other.side;
-  T jump = own_jump(k);
-  if (has_border_jumps_) jump += coarse_jump(m, p, other, i, j);
-  jump_[std::size_t(k)] = jump;
-  part_[p].jumps += jump;
   PartJumps<T>& row = part_jumps_[p];
-  const bool first = std::ranges::none_of(
-      cells.neighbour.begin() + cells.neighbour_begin[p], cells.neighbour.begin() + k,
-      [side](const PartNeighbour& before) { return before.side == side; });
-  row.more |= !first;
-  if (!first) return;
-  row.jump[side] = jump;
-  if (other.part >= 0 || has_border_jumps_) row.part[side] = other.part;
+  std::ranges::fill(row.part, int(p));
+  bool met[4] = {};
+  for (int k = cells.neighbour_begin[p]; k < cells.neighbour_begin[p + 1]; ++k) {
+    const PartNeighbour& other = cells.neighbour[std::size_t(k)];
+    const int side = other.side;
+    T jump = own_jump(k);
+    if (has_border_jumps_) jump += coarse_jump(m, u, p, other, i, j);
+    jump_[std::size_t(k)] = jump;
+    part_[p].jumps += jump;
+    row.more |= met[side];
+    if (std::exchange(met[side], true)) continue;
+    row.jump[side] = jump;
+    if (other.part >= 0 || has_border_jumps_) row.part[side] = other.part;
+  }
 }
 
 template <class T>
@@ -276,10 +276,15 @@ void SpecialRows<T>::linearise(const Membrane<T>& m) {
   linearise_regular(m);
   soft_.linearise(*this, m);
   if (!m.pressure) return;
-  for_special(*cells_, [&](int n, int, int j) {
-    for_parts(*cells_, n, [&](int p) { linearise_part(m, n, p, j); });
+  clear_jumps(m);
+  for_special(*cells_, [&](int n, int i, int j) {
+    const CellState<T> u(*cells_, m.ux, m.uy, i, j);
+    for_parts(*cells_, n, [&](int p) {
+      linearise_part(m, u, n, p, j);
+      if (has_jumps_) set_jumps(m, u, std::size_t(p), i, j);
+    });
   });
-  set_jumps(m);
+  for (BorderJump<T>& border : border_) border.jump = jump(border.neighbour);
   set_steps(m);
 }
 

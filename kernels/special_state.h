@@ -24,6 +24,41 @@ Vector2<T> at_vertex(const SpecialCells<T>& cells, const Plane<const T>& x, cons
   return {x.at(i + (vertex & 1), j + (vertex >> 1)), y.at(i + (vertex & 1), j + (vertex >> 1))};
 }
 
+/// Displacements of the vertices of special cell (i, j), for more than a few of them.
+template <class T>
+class CellState {
+ public:
+  CellState(const SpecialCells<T>& cells, const Plane<const T>& x, const Plane<const T>& y, int i,
+            int j)
+      : crossing_(cells.crossing.data()) {
+    for (int c = 0; c < 4; ++c) corner_[c] = at_vertex(cells, x, y, i, j, c);
+  }
+  /// After a step along d (d.x null: none).
+  CellState(const SpecialCells<T>& cells, const Plane<const T>& x, const Plane<const T>& y, int i,
+            int j, const Unknowns<const T>& d, T step)
+      : CellState(cells, x, y, i, j) {
+    curve_ = d.curve;
+    step_ = step;
+    for (int c = 0; c < 4 && d.x; ++c) {
+      corner_[c].x += step * d.x.at(i + (c & 1), j + (c >> 1));
+      corner_[c].y += step * d.y.at(i + (c & 1), j + (c >> 1));
+    }
+  }
+  Vector2<T> operator()(int vertex) const {
+    if (vertex < kFirstCrossing) return corner_[vertex];
+    const int n = vertex - kFirstCrossing;
+    const Vector2<T> u{crossing_[n].ux(), crossing_[n].uy()};
+    if (!curve_) return u;
+    return {u.x + step_ * curve_[2 * n], u.y + step_ * curve_[2 * n + 1]};
+  }
+
+ private:
+  const HeldNode<T>* crossing_;
+  const T* curve_ = nullptr;
+  T step_ = T(0);
+  Vector2<T> corner_[4];
+};
+
 /// Displacement gradient F − 1.
 template <class T>
 struct Gradient {

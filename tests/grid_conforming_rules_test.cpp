@@ -202,7 +202,7 @@ TEST(GridConformingRules, PartsAreFoundByTheirPoints) {
       Point centre;
       for (const int n : tri.node)
         centre = centre + (1.0 / 3.0) * cells.rest(c, j, cells.part_node[std::size_t(first + n)]);
-      EXPECT_EQ(cells.part_at(c, centre), p);
+      EXPECT_EQ(cells.part_at(c, j, centre), p);
     }
   });
 }

@@ -178,6 +178,9 @@ struct CellVisit {
   T inverse[4] = {};  ///< 1/K_ii of its corners; 0: known or on the fixed boundary
 };
 
+template <class T>
+class CellState;
+
 /// The operator's rows at near nodes and parts, linearised at a state.
 template <class T>
 class SpecialRows {
@@ -269,12 +272,14 @@ class SpecialRows {
   void list_borders();
   void add_stiffness(const Membrane<T>& membrane);
   void linearise_regular(const Membrane<T>& membrane);
-  void linearise_part(const Membrane<T>& membrane, int cell, int part, int j);
+  void linearise_part(const Membrane<T>& membrane, const CellState<T>& u, int cell, int part,
+                      int j);
   void set_own_jumps(const Membrane<T>& membrane);
-  void set_jumps(const Membrane<T>& membrane);
-  T coarse_jump(const Membrane<T>& membrane, std::size_t part, const PartNeighbour& other, int i,
-                int j) const;
-  void set_jump(const Membrane<T>& membrane, std::size_t part, int neighbour, int i, int j);
+  void clear_jumps(const Membrane<T>& membrane);
+  void set_jumps(const Membrane<T>& membrane, const CellState<T>& u, std::size_t part, int i,
+                 int j);
+  T coarse_jump(const Membrane<T>& membrane, const CellState<T>& u, std::size_t part,
+                const PartNeighbour& other, int i, int j) const;
   void set_steps(const Membrane<T>& membrane);
 
   const SpecialCells<T>* cells_ = nullptr;
