@@ -78,7 +78,14 @@ bool Conformer::assemble() {
   std::ranges::stable_sort(chords, {}, [&](const Chord& c) { return cell_number(c.cell); });
   auto next = chords.begin();
   bool good = true;
-  for (const std::int64_t number : special_cells()) {
+  const std::vector<std::int64_t> numbers = special_cells();
+  cells_.cell_column.reserve(numbers.size());
+  cells_.cell_corner.reserve(numbers.size());
+  cells_.triangle.reserve(4 * numbers.size());  // most cells have two parts of four corners
+  cells_.part_node.reserve(8 * numbers.size());
+  cells_.part_area.reserve(2 * numbers.size());
+  cells_.part_centre.reserve(2 * numbers.size());
+  for (const std::int64_t number : numbers) {
     const CellIndex cell{int(number % lattice_.nx), int(number / lattice_.nx)};
     const auto first = next;
     while (next != chords.end() && cell_number(next->cell) <= number) ++next;
@@ -213,6 +220,8 @@ bool Conformer::add_cell(CellIndex cell, std::span<const Chord> chords) {
 /// Lists the held nodes in their places.
 void Conformer::list_nodes() {
   cells_.node_begin.assign(std::size_t(lattice_.ny) + 2, 0);
+  cells_.node.reserve(nodes_.held.size());
+  cells_.curve_node.reserve(nodes_.cell.size());
   for (std::size_t n = 0; n < nodes_.held.size(); ++n) {
     cells_.node.push_back({.rest = nodes_.held_rest[n], .wanted = {}});
     cells_.node_column.push_back(int(nodes_.held[n] % (lattice_.nx + 1)));

@@ -42,6 +42,11 @@ class Placer {
         ny_(lattice.ny),
         snap_(snap),
         simplified_(simplified) {
+    std::size_t count = 0;
+    for (const CurveWalk* walk : walks) count += walk->events.size();
+    events_.reserve(count);
+    nodes_.visits.reserve(count);
+    nodes_.chords.reserve(count);
     for (std::size_t c = 0; c < walks.size(); ++c)
       for (const CurveEvent& event : walks[c]->events) events_.push_back({&event, int(c)});
   }
@@ -255,6 +260,7 @@ void Placer::follow(int curve, std::size_t first) {
     CellIndex after;
   };
   std::vector<Stay> stays;
+  stays.reserve(walk.events.size());
   auto nearer = [&](const Visit& visit, Point at) {
     const Point place = rest(visit.vertex);
     return length(at - place) < length(visit.source - place);

@@ -67,6 +67,7 @@ void SpecialRows<T>::list_near_nodes(int columns, int rows) {
   near_begin_.assign(std::size_t(rows) + 1, 0);
   known_begin_ = loose_begin_ = near_begin_;
   near_half_begin_.assign(2 * std::size_t(rows) + 1, 0);
+  near_node_.reserve(2 * std::size_t(cells_->size()));
   std::vector<int> odd;
   for (int j = 1; j + 1 < rows; ++j) {
     CellsAround<T> around(*cells_, j);
@@ -131,6 +132,7 @@ template <class T>
 void SpecialRows<T>::list_visits() {
   const SpecialCells<T>& cells = *cells_;
   visit_begin_.assign(1, 0);
+  visit_.reserve(std::size_t(cells.size()));
   for (std::size_t j = 0; j + 1 < cells.row_begin.size(); ++j)
     for (const int parity : {0, 1}) {
       for (int n = cells.row_begin[j]; n < cells.row_begin[j + 1]; ++n) {
