@@ -114,11 +114,13 @@ void match_by_length(const MeasuredChain& source, const MeasuredChain& target, d
 
 void check_chain(const std::string& name, const char* side, const std::vector<CubicBezier>& chain) {
   if (chain.empty()) throw std::invalid_argument("curve '" + name + "': the " + side + " is empty");
-  for (const CubicBezier& segment : chain)
-    for (const Point& p : segment.control)
-      if (!std::isfinite(p.x) || !std::isfinite(p.y))
-        throw std::invalid_argument("curve '" + name + "': the " + side +
-                                    " has a point that is not finite");
+  const auto finite = [](const CubicBezier& segment) {
+    const auto& p = segment.control;
+    return (0.0 * p[0] + 0.0 * p[1]) + (0.0 * p[2] + 0.0 * p[3]) == Point{};
+  };
+  if (!std::ranges::all_of(chain, finite))
+    throw std::invalid_argument("curve '" + name + "': the " + side +
+                                " has a point that is not finite");
   const bool has_length = std::ranges::any_of(chain, [](const CubicBezier& segment) {
     return std::ranges::any_of(segment.control,
                                [&](const Point& p) { return !(p == segment.control[0]); });
@@ -172,13 +174,13 @@ double arc_length(const std::vector<CubicBezier>& chain) {
   return sum;
 }
 
-bool one_to_one(const CurvePair& pair) {
+void check(const CurvePair& pair) {
   check_chain(pair.name, "source", pair.source);
   check_chain(pair.name, "target", pair.target);
-  return pair.source.size() == pair.target.size();
 }
 
 std::vector<SegmentPair> matched(const CurvePair& pair) {
+  check(pair);
   std::vector<SegmentPair> out;
   if (one_to_one(pair)) {
     out.reserve(pair.source.size());

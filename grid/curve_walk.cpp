@@ -98,6 +98,7 @@ void set_events(CurveWalk& walk, const Lattice& lattice) {
 class Walker {
  public:
   Walker(const CurvePair& curve, const Lattice& lattice) : curve_(curve), lattice_(lattice) {
+    check(curve);
     if (!one_to_one(curve)) matched_ = matched(curve);
   }
 

@@ -80,7 +80,8 @@ Integral integrate(const SegmentPair& pair, Cell cell, double t0, double t1, con
 }
 
 /// Straight arcs at constant speed: weights are quadratic in t, which two points integrate exactly.
-Integral straight_arc(const ChordPair& pair, Cell cell, double t0, double t1) {
+[[gnu::always_inline]] inline Integral straight_arc(const ChordPair& pair, Cell cell, double t0,
+                                                    double t1) {
   Integral sum;
   const double speed = length(pair.source_move);
   for_two_gauss_points(t0, t1, [&](double t, double weight) {
@@ -108,6 +109,7 @@ class Cutter {
     if (!(curve.weight > 0.0))
       kernels::refuse("curve '" + curve.name + "': weight", curve.weight,
                       "positive (infinity allowed)");
+    check(curve);
     std::vector<Stay> stays;
     for_matched(curve, [&](const CubicBezier& source, const CubicBezier& target) {
       if (source.constant_speed() && target.constant_speed())
@@ -128,11 +130,12 @@ class Cutter {
                 target_begin = lattice_.to_cells(target.control[0]),
                 target_end = lattice_.to_cells(target.control[3]);
     const ChordPair pair{begin, target_begin, end - begin, target_end - target_begin};
-    crossings_.clear();
     // Most chords of a polyline cross no line.
-    const bool stays_on =
-        !stays.empty() && inside(begin, stays.back().cell) && inside(end, stays.back().cell);
-    if (!stays_on) find_crossings(in_cells(source), crossings_);
+    if (!stays.empty() && inside(begin, stays.back().cell) && inside(end, stays.back().cell)) {
+      stays.back().integral.add(straight_arc(pair, stays.back().cell, 0.0, 1.0));
+      return;
+    }
+    find_crossings(in_cells(source), crossings_);
     add_pieces(
         curve, stays, [&](double t) { return pair.at(t); },
         [&](Cell cell, double t0, double t1) { return straight_arc(pair, cell, t0, t1); });

@@ -22,25 +22,34 @@ struct Motion {
 };
 
 Motion motion(const grid::CurvePair& curve) {
-  // Polylines of thousands of chords need no more than their middles.
-  const int samples = std::max(curve.source.size(), curve.target.size()) < 64 ? 8 : 1;
+  const Point begin = curve.source.front().control[0];
   Point source, target;
   double total = 0.0, along = 0.0, across = 0.0;
+  const auto add = [&](double ds, Point s, Point moved) {
+    source = source + ds * s;
+    target = target + ds * moved;
+    along += ds * grid::dot(s, moved);
+    across += ds * grid::cross(s, moved);
+    total += ds;
+  };
+  // Of polylines of hundreds of chords these are enough.
+  const bool chords = std::max(curve.source.size(), curve.target.size()) >= 64;
+  constexpr int kSamples = 8;
   grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& to) {
-    for (int n = 0; n < samples; ++n) {
-      const double t = (n + 0.5) / samples, ds = grid::length(from.derivative(t));
-      const Point s = from.at(t) - curve.source.front().control[0], moved = to.at(t);
-      source = source + ds * s;
-      target = target + ds * moved;
-      along += ds * grid::dot(s, moved);
-      across += ds * grid::cross(s, moved);
-      total += ds;
+    if (chords) {
+      const Point a = from.control[0] - begin, b = from.control[3] - begin;
+      add(grid::length(b - a), 0.5 * (a + b), 0.5 * (to.control[0] + to.control[3]));
+      return;
+    }
+    for (int n = 0; n < kSamples; ++n) {
+      const double t = (n + 0.5) / kSamples;
+      add(grid::length(from.derivative(t)), from.at(t) - begin, to.at(t));
     }
   });
   // About the centroids.
   Motion m{(1.0 / total) * source, (1.0 / total) * target};
   m.angle = std::atan2(across - grid::cross(source, m.target), along - grid::dot(source, m.target));
-  m.source = m.source + curve.source.front().control[0];
+  m.source = m.source + begin;
   if (curve.turn_degrees != 0.0) {
     const double full = 2.0 * std::numbers::pi, wanted = curve.turn_degrees / 360.0 * full;
     m.angle += full * std::round((wanted - m.angle) / full);

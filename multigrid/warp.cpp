@@ -59,6 +59,7 @@ void check(const WarpProblem& problem, const SolverOptions& options) {
                                 std::to_string(lattice.origin_px.x) + ", " +
                                 std::to_string(lattice.origin_px.y) + "): must be finite");
   grid::check(problem.material, lattice);
+  for (const grid::CurvePair& curve : problem.curves) grid::check(curve);
   if (!(options.tolerance_px >= 0.0) || !std::isfinite(options.tolerance_px))
     kernels::refuse("tolerance", options.tolerance_px, "at least 0 and finite");
   if (options.start) check_start(*options.start, lattice);

@@ -144,8 +144,8 @@ struct ConformingCells {
 /// Builds the cells that conform to the sources of `curves`. Linear in crossings and segments, and
 /// independent of the number of cells. Pairs with equally many segments are taken as they are (see
 /// `matched`). Throws std::invalid_argument naming curve, place and bound for a source that leaves
-/// the lattice, for a weight that is not positive, for a snap outside (0, 0.25], and as `matched`
-/// does.
+/// the lattice, for a weight that is not positive, for a snap outside (0, 0.25], and as `check`
+/// of a curve does.
 ConformingCells conform(const std::vector<CurvePair>& curves, const Lattice& lattice,
                         const ConformOptions& options = {});
 

@@ -62,17 +62,20 @@ struct SegmentPair {
   CubicBezier source, target;
 };
 
+/// Throws std::invalid_argument naming the curve when a chain is empty, has no length or holds a
+/// point that is not finite.
+void check(const CurvePair& pair);
+
 /// The pair as corresponding segments: one to one where both chains have the same number of
 /// segments, by relative arc length otherwise (pieces are divided until equal t deviates from equal
-/// relative arc length by less than 1e-4 of the chain). Throws std::invalid_argument naming the
-/// curve when a chain is empty, has no length or holds a point that is not finite.
+/// relative arc length by less than 1e-4 of the chain). Throws as `check` does.
 std::vector<SegmentPair> matched(const CurvePair& pair);
 
-/// Whether both chains have the same number of segments. Throws as `matched` does.
-bool one_to_one(const CurvePair& pair);
+/// Whether both chains have the same number of segments.
+inline bool one_to_one(const CurvePair& pair) { return pair.source.size() == pair.target.size(); }
 
 /// Calls f(source, target) for the segments of `matched`, which are copied only where chains are
-/// not one to one: a polyline may have thousands.
+/// not one to one: a polyline may have thousands. Of a pair that `check` lets pass.
 template <class F>
 void for_matched(const CurvePair& pair, F&& f) {
   if (one_to_one(pair)) {

@@ -34,7 +34,7 @@ struct CutCells {
 /// cell of larger index), stays in a cell shorter than 1e-3 cells are dropped, and so are rows of
 /// which the fixed boundary holds all but 2 %. Cost: linear in crossings and segments. Throws
 /// std::invalid_argument naming curve, place and bound for a source that leaves the lattice, for a
-/// weight that is not positive, and as `matched` does.
+/// weight that is not positive, and as `check` of a curve does.
 CutCells cut(const std::vector<CurvePair>& curves, const Lattice& lattice, double most_weight);
 
 /// Cuts one scene after another by one lattice: only curves that the scene before did not have are
