@@ -33,28 +33,33 @@ std::array<double, 2> areas(const kernels::MapTriangle& triangle) {
 std::vector<CurveReport> curve_gaps(const Solution& solution,
                                     const std::vector<grid::CurvePair>& curves) {
   const kernels::LatticeMapView map = map_of(solution);
+  const double spacing = 0.25 * solution.lattice.cell_px;  // of what is looked at
   std::vector<CurveReport> reports;
   for (const grid::CurvePair& curve : curves) {
     CurveReport report{.name = curve.name};
-    double squares = 0.0;
-    grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& target) {
-      const double length = grid::arc_length(from);
-      const int points = std::max(1, int(std::ceil(4.0 * length / solution.lattice.cell_px)));
+    double squares = 0.0, seen = 0.0, unseen = 0.0;  // of arc length
+    grid::for_matched(curve, [&](const grid::CubicBezier& source, const grid::CubicBezier& target) {
+      const double length = grid::arc_length(source);
+      unseen += length;
+      if (seen > 0.0 && unseen < spacing) return;  // most chords of a polyline
+      const int points = std::max(1, int(std::ceil(length / spacing)));
       for (int n = 0; n < points; ++n) {
         const double t = (n + 0.5) / points;
-        const grid::Point source = from.at(t);
-        const kernels::Position to = kernels::forward_position(map, {source.x, source.y});
+        const grid::Point rest = source.at(t);
+        const kernels::Position to = kernels::forward_position(map, {rest.x, rest.y});
         const double gap = grid::length(grid::Point{to.x, to.y} - target.at(t));
-        const double ds = grid::length(from.derivative(t)) / points;
-        squares += gap * gap * ds;
-        report.length_px += ds;
+        const double speed = length > 0.0 ? grid::length(source.derivative(t)) / length : 1.0;
+        squares += gap * gap * speed * unseen / points;
         if (gap > report.gap_max_px) {
           report.gap_max_px = gap;
-          report.worst_px = source;
+          report.worst_px = rest;
         }
       }
+      seen += unseen;
+      unseen = 0.0;
     });
-    report.gap_rms_px = report.length_px > 0.0 ? std::sqrt(squares / report.length_px) : 0.0;
+    report.length_px = seen + unseen;
+    report.gap_rms_px = seen > 0.0 ? std::sqrt(squares / seen) : 0.0;
     reports.push_back(report);
   }
   return reports;
