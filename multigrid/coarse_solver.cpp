@@ -63,7 +63,9 @@ void CoarseSolver<T>::factorise(Level<T>& level, bool pressure, T jump) {
   Eigen::MatrixXd matrix(n, n);
   for (Eigen::Index column = 0; column < n; ++column) {
     *unknowns[std::size_t(column)] = T(1);
-    kernels::apply_hessian<T>(membrane, d, f);
+    const bool of_curve = column >= n - Eigen::Index(2 * cuts);
+    if (!of_curve) kernels::apply_hessian<T>(membrane, d, f);
+    if (of_curve) for_unknowns(f, curve.data(), 0, parts, pressure, [](T& value) { value = T(0); });
     kernels::add_curve_force<T>(rows, level.dq.data(), T(-1), f);
     kernels::apply_cuts<T>(rows, d, level.dq.data(), curve.data());
     Eigen::Index row = 0;
