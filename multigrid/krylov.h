@@ -21,6 +21,7 @@ struct LinearOptions {
   bool band = false;  ///< Cycle::relax_band
   /// gcr on rows with their jump: one cycle, whose residual is not looked at.
   bool unmeasured = false;
+  bool lightens = false;  ///< such cycles are V-cycles after the first steps (newton_accuracy.h)
 };
 
 struct LinearReport {

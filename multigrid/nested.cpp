@@ -148,9 +148,9 @@ LinearOptions linear_options(const Hierarchy<T>& hierarchy, int l, bool start, b
   if (averaged(hierarchy, options) && hierarchy.traits().stiffness <= most_for_v &&
       level.nodes() < kSmallNodes)
     linear.kind = CycleKind::v;
-  linear.unmeasured = !start && !options.exact && options.solver == Solver::gcr &&
-                      (loose(hierarchy, options, shortened) ||
-                       (smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff));
+  const bool unseen = !start && !options.exact && options.solver == Solver::gcr;
+  linear.lightens = unseen && smooth(hierarchy, options) && hierarchy.traits().stiffness < kStiff;
+  linear.unmeasured = linear.lightens || (unseen && loose(hierarchy, options, shortened));
   linear.band = level.conforming || (!start && averaged(hierarchy, options));
   if (!start && !level.conforming && !kernels::isotropic(level.solid.law.model)) {
     linear.reduction = kReduction;
