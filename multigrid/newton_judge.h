@@ -223,6 +223,9 @@ class Judge {
   }
   bool end(Status status) {
     report_.status = status;
+    // A step of length 0, or a linear solution that is 0, tells nothing of what is left.
+    if (status == Status::stalled && report_.error_rms == 0.0)
+      report_.error_rms = report_.error_max = std::numeric_limits<double>::quiet_NaN();
     return true;
   }
 

@@ -63,5 +63,16 @@ TEST_F(DriverExamples, AllConvergeAndMeetTheirCurves) {
   }
 }
 
+// Its last linear solution is 0, which is no error of 0.
+TEST_F(DriverExamples, ARunThatStallsDoesNotClaimThatNothingIsLeft) {
+  const RunResult result =
+      run_drumhead(scratch, {"warp", "driver/examples/jacket.toml", "--model", "neohookean",
+                             "--curve-method", "averaged", "--cells", "96", "--quiet"});
+  EXPECT_EQ(result.exit_code, 1);
+  const Json r = Json::parse(read_text(scratch / "build/demo/jacket.json"));
+  EXPECT_EQ(r["status"], "stalled");
+  EXPECT_TRUE(r["error_px"]["algebraic_rms"].is_null()) << r["error_px"];
+}
+
 }  // namespace
 }  // namespace drumhead::driver
