@@ -10,18 +10,36 @@ namespace {
 
 using grid::Point;
 
-Point turned(Point p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x - s * p.y, s * p.x + c * p.y};
+/// A rotation about the origin.
+struct Turning {
+  explicit Turning(double angle) : c(std::cos(angle)), s(std::sin(angle)) {}
+  Point operator()(Point p) const { return {c * p.x - s * p.y, s * p.x + c * p.y}; }
+  double c, s;
+};
+
+std::vector<grid::CurvePair> one_to_one(std::vector<grid::CurvePair> curves) {
+  for (grid::CurvePair& curve : curves) {
+    if (grid::one_to_one(curve)) continue;
+    const std::vector<grid::SegmentPair> pairs = grid::matched(curve);
+    curve.source.clear();
+    curve.target.clear();
+    for (const grid::SegmentPair& pair : pairs) {
+      curve.source.push_back(pair.source);
+      curve.target.push_back(pair.target);
+    }
+  }
+  return curves;
 }
 
+}  // namespace
+
 /// Centroids and best rotation of a matched pair.
-struct Motion {
+struct LoadPath::Motion {
   Point source, target;
   double angle = 0.0;
 };
 
-Motion motion(const grid::CurvePair& curve) {
+LoadPath::Motion LoadPath::motion(const grid::CurvePair& curve) {
   const Point begin = curve.source.front().control[0];
   Point source, target;
   double total = 0.0, along = 0.0, across = 0.0;
@@ -57,50 +75,36 @@ Motion motion(const grid::CurvePair& curve) {
   return m;
 }
 
-}  // namespace
-
 double largest_turn(const std::vector<grid::CurvePair>& curves) {
   double largest = 0.0;
   for (const grid::CurvePair& curve : curves)
-    largest = std::max(largest, std::abs(motion(curve).angle));
+    largest = std::max(largest, std::abs(LoadPath::motion(curve).angle));
   return largest;
 }
 
-std::vector<grid::CurvePair> one_to_one(const std::vector<grid::CurvePair>& curves) {
-  std::vector<grid::CurvePair> out = curves;
-  for (grid::CurvePair& curve : out) {
-    if (grid::one_to_one(curve)) continue;
-    const std::vector<grid::SegmentPair> pairs = grid::matched(curve);
-    curve.source.clear();
-    curve.target.clear();
-    for (const grid::SegmentPair& pair : pairs) {
-      curve.source.push_back(pair.source);
-      curve.target.push_back(pair.target);
-    }
-  }
-  return out;
+LoadPath::LoadPath(const std::vector<grid::CurvePair>& curves)
+    : curves_(one_to_one(curves)), part_(curves_) {
+  for (const grid::CurvePair& curve : curves_) motions_.push_back(motion(curve));
 }
 
-std::vector<grid::CurvePair> partway(const std::vector<grid::CurvePair>& curves, double t) {
-  std::vector<grid::CurvePair> out;
-  for (const grid::CurvePair& curve : curves) {
-    grid::CurvePair part{curve.name, {}, {}, curve.weight, curve.turn_degrees};
-    const Motion m = motion(curve);
+LoadPath::~LoadPath() = default;
+
+const std::vector<grid::CurvePair>& LoadPath::at(double t) {
+  if (t == 1.0) return curves_;
+  for (std::size_t k = 0; k < curves_.size(); ++k) {
+    const Motion& m = motions_[k];
     const Point centre = (1.0 - t) * m.source + t * m.target;
-    grid::for_matched(curve, [&](const grid::CubicBezier& from, const grid::CubicBezier& to) {
-      part.source.push_back(from);
-      grid::CubicBezier target;
-      for (std::size_t n = 0; n < 4; ++n) {
+    const Turning back(-m.angle), forth(t * m.angle);
+    for (std::size_t n = 0; n < curves_[k].source.size(); ++n) {
+      const grid::CubicBezier &from = curves_[k].source[n], &to = curves_[k].target[n];
+      for (std::size_t c = 0; c < 4; ++c) {
         // Seen from the turned source, the target's own shape grows linearly.
-        const Point s = from.control[n] - m.source;
-        const Point shape = turned(to.control[n] - m.target, -m.angle);
-        target.control[n] = centre + turned((1.0 - t) * s + t * shape, t * m.angle);
+        const Point s = from.control[c] - m.source, shape = back(to.control[c] - m.target);
+        part_[k].target[n].control[c] = centre + forth((1.0 - t) * s + t * shape);
       }
-      part.target.push_back(target);
-    });
-    out.push_back(std::move(part));
+    }
   }
-  return out;
+  return part_;
 }
 
 }  // namespace drumhead::multigrid

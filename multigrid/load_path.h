@@ -13,10 +13,22 @@ namespace drumhead::multigrid {
 /// length, about the centroids). With turn_degrees ≠ 0 it is the equivalent angle closest to that.
 double largest_turn(const std::vector<grid::CurvePair>& curves);
 
-/// The curves with targets of as many segments as their sources (grid::matched).
-std::vector<grid::CurvePair> one_to_one(const std::vector<grid::CurvePair>& curves);
+/// The way of curves to their targets. `curves`: such as grid::check lets pass.
+class LoadPath {
+ public:
+  explicit LoadPath(const std::vector<grid::CurvePair>& curves);
+  ~LoadPath();
+  /// The curves, matched (grid::matched), with targets at share t of the way, 0…1; at 1 the targets
+  /// themselves. Valid until the next call, at 1 as long as the path is.
+  const std::vector<grid::CurvePair>& at(double t);
 
-/// The curves with targets at share t of the way, 0…1; at 1 the targets themselves.
-std::vector<grid::CurvePair> partway(const std::vector<grid::CurvePair>& curves, double t);
+ private:
+  struct Motion;
+  static Motion motion(const grid::CurvePair& curve);
+  friend double largest_turn(const std::vector<grid::CurvePair>& curves);
+
+  std::vector<grid::CurvePair> curves_, part_;
+  std::vector<Motion> motions_;
+};
 
 }  // namespace drumhead::multigrid

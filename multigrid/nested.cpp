@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 
 #include "exact_rows.h"
@@ -15,8 +14,13 @@
 namespace drumhead::multigrid {
 namespace {
 
-// From 16² a wrong minimum was found; a feature of fewer than four cells is not seen as one.
+// Least cells of the lattice to start on. From 16² a wrong minimum was found; a feature of fewer
+// than four cells is not seen as one.
 constexpr int kStartCells = 32;
+// Eq. 1 without exact rows tries this few, and begins again on the next lattice where steps had to
+// be shortened: S5, conforming, kappa/mu 100 and 1e4, otherwise does not end on 96² and 100² at
+// half of the offsets.
+constexpr int kTrialCells = 24;
 constexpr double kCellsPerFeature = 4.0;
 // A start finer than this would cost more than it is worth.
 constexpr int kMostStartCells = 128;
@@ -73,7 +77,6 @@ constexpr double kGentleContent = 0.9, kLooseReduction = 0.6, kCoarseShare = 0.3
 // that a little of GCR: loosely solved S5, kappa 100, 100² does not end at three of six offsets,
 // and S3, 400², takes 48 cycles instead of 29.
 constexpr double kStiffReduction = 0.5;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kSmallNodes = 20000;
 // Up to these kappa/mu, on the start level and on the others, V-cycles take the place of F-cycles
 // on lattices of few nodes, where a visit to a coarse level costs more than its nodes. S1 kappa 1,
@@ -82,12 +85,22 @@ constexpr std::size_t kSmallNodes = 20000;
 constexpr double kVCyclesFirst = 10.0, kVCycles = 1.0;
 
 template <class T>
-int start_level(const Hierarchy<T>& hierarchy, double smallest_feature) {
-  auto cells = [&](int l) { return std::max(hierarchy[l].nx, hierarchy[l].ny); };
+int cells(const Level<T>& level) {
+  return std::max(level.nx, level.ny);
+}
+
+bool shortens(const std::vector<NewtonStep>& steps) {
+  return std::ranges::any_of(steps, [](const NewtonStep& s) { return s.step < 1.0; });
+}
+
+template <class T>
+int start_level(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
+  const bool tries = !options.exact && !kernels::isotropic(hierarchy.traits().model);
+  const int least = tries ? kTrialCells : kStartCells;
   int start = 0;
-  while (start + 1 < hierarchy.size() && cells(start + 1) >= kStartCells) {
-    const double feature = smallest_feature / double(hierarchy[start + 1].spacing);
-    if (feature < kCellsPerFeature && cells(start) <= kMostStartCells) break;
+  while (start + 1 < hierarchy.size() && cells(hierarchy[start + 1]) >= least) {
+    const double feature = options.smallest_feature / double(hierarchy[start + 1].spacing);
+    if (feature < kCellsPerFeature && cells(hierarchy[start]) <= kMostStartCells) break;
     ++start;
   }
   return start;
@@ -189,8 +202,8 @@ void set_least_rates(const Hierarchy<T>& hierarchy, const NestedOptions& options
                                                              : 0.0;
 }
 
-/// The first state on the start level: harmonic, and for large rotations on along the load path,
-/// whose steps are returned.
+/// The first state on the start level: harmonic, for large rotations on along the load path, for
+/// exact rows with kappa from kFirstKappa on; returns the steps.
 template <class T>
 std::vector<NewtonStep> find_start(Hierarchy<T>& hierarchy, int start, const NestedOptions& options,
                                    const NewtonOptions& newton_options, Newton<T>& newton,
@@ -198,24 +211,29 @@ std::vector<NewtonStep> find_start(Hierarchy<T>& hierarchy, int start, const Nes
   LinearOptions harmonic = newton_options.linear;
   harmonic.content = harmonic.reduction = kHarmonic;
   std::vector<NewtonStep> taken;
-  if (!options.set_targets) {
-    newton.harmonic(harmonic);
-    return taken;
-  }
-  for (int n = 1; n < kPathSteps; ++n) {
+  if (options.limit_kappa) options.limit_kappa(kFirstKappa);
+  if (!options.set_targets) newton.harmonic(harmonic);
+  for (int n = 1; options.set_targets && n < kPathSteps; ++n) {
     options.set_targets(start, double(n) / kPathSteps);
     if (n == 1) newton.harmonic(harmonic);
     NewtonOptions part = newton_options;
     part.most_steps = kStepsPerPathStep;
+    part.gives_up = false;
     part.tolerance_rms = 0.05 * double(hierarchy[start].spacing);
     clamp = {};
     const LevelProgress share =
-        part_of(progress, double(n - 1) / kPathSteps, double(n) / kPathSteps);
+        part_of(progress, kPathShare * (n - 1) / kPathSteps, kPathShare * n / kPathSteps);
     const NewtonReport done = newton.run(part, clamp, share);
     taken.insert(taken.end(), done.steps.begin(), done.steps.end());
   }
-  options.set_targets(start, 1.0);
-  clamp = {};
+  if (options.set_targets) {
+    options.set_targets(start, 1.0);
+    clamp = {};
+  }
+  if (options.limit_kappa)
+    std::ranges::copy(
+        stiffen(options, newton_options, newton, clamp, part_of(progress, kPathShare, kPathShare)),
+        std::back_inserter(taken));
   return taken;
 }
 
@@ -243,15 +261,17 @@ void expect(const std::vector<Contraction>& observed, bool smooth,
   for (Contraction& contraction : expected) contraction.residual = 0.0;
 }
 
-/// What every level is asked for. `shortened`: steps on the level before.
+/// What every level is asked for. `shortened`: steps on the level before; `error_of_moves`: see
+/// ErrorEstimate.
 template <class T>
 void set_options(const Hierarchy<T>& hierarchy, int l, bool start, bool shortened,
-                 const NestedOptions& options, NewtonOptions& newton) {
+                 double error_of_moves, const NestedOptions& options, NewtonOptions& newton) {
   const Level<T>& level = hierarchy[l];
   const bool finest = l == 0;
   newton.linear = linear_options(hierarchy, l, start, shortened, options);
   newton.linear.solver = options.solver;
   newton.most_steps = start ? kStartSteps : finest ? kFinestSteps : kLevelSteps;
+  newton.gives_up = start && !finest && cells(level) < kStartCells;
   // Gentle levels end sooner by the contraction of plain steps (S1 kappa 1, 800² 3.5 steps so
   // instead of 2.8, means of six offsets).
   newton.lengthens = !start && aligned(hierarchy, options) && !gentle(hierarchy);
@@ -259,7 +279,9 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, bool shortene
   newton.least_steps = finest ? 1 : !start && l == 1 && smooth(hierarchy, options) ? 3 : 2;
   const bool coarsely = !finest && loose(hierarchy, options, shortened);
   const double share = coarsely ? kCoarseShare : kShare;
-  newton.share_of_change = start ? 0.0 : share * options.discretisation_share;
+  const bool plain = finest && !shortened;
+  newton.share_of_change =
+      start ? 0.0 : share * (plain ? error_of_moves : options.discretisation_share);
   const double start_error = gentle(hierarchy)              ? kGentleStart
                              : averaged(hierarchy, options) ? kAveragedStart
                                                             : kStartError;
@@ -309,26 +331,22 @@ void forget_errors(SolveReport& report) {
 template <class T>
 void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, double cell_px,
                       grid::MemoryMeter& meter, SolveReport& report) {
-  const int start = start_level(hierarchy, options.smallest_feature);
+  const int first = start_level(hierarchy, options);
+  int start = first;
   ClampSchedule clamp;
   NewtonOptions newton_options;
-  std::vector<LevelChange> changes;
+  ErrorEstimate estimate(options.discretisation_share, hierarchy.conforming(), options.tips);
   bool rounded = false, shortened = false;
   for (int l = start; l >= 0; --l) {
     Level<T>& level = hierarchy[l];
-    const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, start);
+    const LevelProgress progress = level_progress(options.progress, level.nx, level.ny, l, first);
     Newton<T> newton(hierarchy, l, meter);
     std::optional<LevelCopy<T>> coarse;
     std::vector<NewtonStep> path;  // to the state that the level's own run begins with
-    set_options(hierarchy, l, l == start, shortened, options, newton_options);
+    set_options(hierarchy, l, l == start, shortened, estimate.of_next_moves(), options,
+                newton_options);
     if (l == start) {
-      if (options.limit_kappa) options.limit_kappa(kFirstKappa);
-      path = find_start(hierarchy, start, options, newton_options, newton, clamp,
-                        part_of(progress, 0.0, kPathShare));
-      if (options.limit_kappa)
-        std::ranges::copy(stiffen(options, newton_options, newton, clamp,
-                                  part_of(progress, kPathShare, kPathShare)),
-                          std::back_inserter(path));
+      path = find_start(hierarchy, start, options, newton_options, newton, clamp, progress);
     } else {
       // What a finer level changes is small: the positive definite Hessian does, until it does not.
       clamp.theta = 1.0;
@@ -341,7 +359,7 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     NewtonReport done = newton.run(
         newton_options, clamp, part_of(progress, way ? kPathShare : 0.0, exact ? kJumpShare : 1.0));
     set_least_rates(hierarchy, options, newton_options);
-    shortened = std::ranges::any_of(done.steps, [](const NewtonStep& s) { return s.step < 1.0; });
+    shortened = shortens(done.steps);
     if (l != start) expect(done.contractions, smooth(hierarchy, options), newton_options.expected);
     if (exact && !ended_early(done.status))
       done = until_at_rest(hierarchy, newton_options.linear, newton, done,
@@ -351,18 +369,18 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.algebraic_max_px = done.error_max * cell_px;
     report.volume_gap = done.volume_gap;
     rounded = done.rounded;
-    LevelChange change{done.change_rms, done.change_max};
-    double share = l == start ? kUnknown : options.discretisation_share;
-    if (coarse) {
-      change = coarse->change(hierarchy[l + 1], level);
-      changes.push_back(change);
-      share = error_share(options.tips, changes);
-    }
-    report.discretisation_rms_px = share * change.rms * cell_px;
-    report.discretisation_max_px = share * change.max * cell_px;
+    std::optional<LevelChange> change;
+    if (coarse) change = coarse->change(hierarchy[l + 1], level);
+    const LevelChange error = estimate.of({done.change_rms, done.change_max}, l == start, change);
+    report.discretisation_rms_px = error.rms * cell_px;
+    report.discretisation_max_px = error.max * cell_px;
     path.insert(path.end(), done.steps.begin(), done.steps.end());
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(path), cell_px));
     if (ended_early(report.status)) return end_early(hierarchy, l, report);
+    if (newton_options.gives_up && shortened) {
+      --start;
+      clamp = {};
+    }
   }
   note_areas(report);
   if (rounded) note_rounding(report);

@@ -333,7 +333,7 @@ NewtonReport Newton<T>::run(const NewtonOptions& options, ClampSchedule& clamp,
     step.inverted_cells = inverted_cells();
     step.dx_rms_px = step.step * full.rms;
     step.dx_max_px = step.step * moves_.longest;
-    if (!areas && accuracy.raised_by(step, shortened, report)) continue;
+    if (!areas && !options.gives_up && accuracy.raised_by(step, shortened, report)) continue;
     if (!options.lengthens && ((!options.adaptive && length.slow(full.rms)) || judge.uneven()))
       turned = turn.from_last_to(d);
     const double cosine = turned.cosine;

@@ -19,8 +19,8 @@ namespace drumhead::multigrid {
 /// whose tips converge more slowly), .75 to .9 (S2), .65 to .85 (S4).
 inline constexpr double kErrorOfChange = 0.8;
 /// What is taken for it with conforming cells, whose curves have no tips or some (found on 64² to
-/// 256²: 1/7 to 1/4, and 1/2 to 1). It sets how much is solved; the report's error is that of
-/// level_change.h, of which .05 to .19 is left so (S1, S2, S4, 100² to 400²).
+/// 256²: 1/7 to 1/4, and 1/2 to 1). It sets how much coarse levels are solved; the finest and the
+/// report's error go by level_change.h.
 inline constexpr double kErrorOfSecondOrder = 1.0 / 3.0, kErrorWithTips = 1.0 / 2.0;
 
 /// Of the n-th step of a level.
@@ -39,6 +39,7 @@ struct NewtonOptions {
   double most_volume_gap = 0.0;  ///< and, if > 0, not before NewtonReport::volume_gap is below
   int least_steps = 1;
   int most_steps = 8;
+  bool gives_up = false;  ///< stalls with the first step that has to be shortened
   /// So many steps in a row none of which moves nodes by less than half the least before stall; 0:
   /// they do not.
   int most_idle = 0;

@@ -59,8 +59,8 @@ class Judge {
       set_error(kTiny, move);
       return end(Status::converged);
     }
-    if ((step.step == 0.0 && step.theta <= 1.0) || creeping_ >= kMostCreeping ||
-        unsolved_ >= kMostUnsolved || idles(step.dx_rms_px))
+    if ((step.step == 0.0 && step.theta <= 1.0) || (options_.gives_up && shortened) ||
+        creeping_ >= kMostCreeping || unsolved_ >= kMostUnsolved || idles(step.dx_rms_px))
       return end(Status::stalled);
     // No contraction is seen after a larger theta, which slows a step, or where nothing moved.
     const bool comparable = step.theta >= before.theta, moved = before.dx_rms_px > 0.0;

@@ -194,12 +194,11 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   const bool keep = options.kept != nullptr && !options.exact;
   SceneLevels<T>& levels =
       keep ? options.kept->contents().levels<T>(std::move(key)) : own.emplace(std::move(key));
-  const bool path = largest_turn(problem.curves) > kLoadPathTurn;
+  std::optional<LoadPath> path;
+  if (largest_turn(problem.curves) > kLoadPathTurn) path.emplace(problem.curves);
   // Conforming cells take other targets where their sources are the same to the last bit.
   const bool retargets = path && levels.key().conforming;
-  const std::vector<grid::CurvePair> paired =
-      retargets ? one_to_one(problem.curves) : std::vector<grid::CurvePair>{};
-  const std::vector<grid::CurvePair>& curves = retargets ? paired : problem.curves;
+  const std::vector<grid::CurvePair>& curves = retargets ? path->at(1.0) : problem.curves;
   if (keep || retargets)
     levels.lay_out_again(curves);
   else
@@ -216,10 +215,7 @@ void solve_in(const WarpProblem& problem, const SolverOptions& options, Solution
   NestedOptions nested = nested_options(problem, options, material);
   if (options.exact && levels.key().traits.pressure)
     nested.limit_kappa = [&](double most) { hierarchy.set_compliance(material, most); };
-  if (path)
-    nested.set_targets = [&](int top, double t) {
-      levels.set_targets(t < 1.0 ? partway(curves, t) : curves, top);
-    };
+  if (path) nested.set_targets = [&](int top, double t) { levels.set_targets(path->at(t), top); };
   if (!options.start || options.exact ||
       options.start->report.curve_method != options.curve_method ||
       !continue_iteration(hierarchy, cuts, *options.start, nested, meter, report))
