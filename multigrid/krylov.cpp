@@ -19,6 +19,8 @@ namespace {
 // Cycles alone go on while each leaves less than this share of the residual.
 constexpr double kCyclesSuffice = 0.85;
 constexpr int kMostPlainCycles = 3;
+// LinearOptions::most_idle cycles gain nothing if together they leave more than this share.
+constexpr double kIdle = 0.98;
 
 template <class T>
 class Gcr {
@@ -114,11 +116,15 @@ LinearReport Gcr<T>::solve(double start, LinearReport report, const LinearOption
   for (std::size_t k = 0; k < r.q.size(); ++k) r.q[k] = level.fq[k] - r.q[k];
 
   std::size_t stored = 0;
-  while (report.cycles < options.most_cycles) {
+  double mark = std::numeric_limits<double>::infinity();
+  for (int idle = 0; report.cycles < options.most_cycles && idle < options.most_idle; ++idle) {
     ++report.cycles;
     if (!step(r, x, options, stored)) break;
     report.residual = system_.norm(r) / start;
     if (report.residual <= options.reduction) break;
+    if (report.residual > kIdle * mark) continue;
+    mark = report.residual;
+    idle = -1;
   }
   system_.set_correction(x);
   return report;

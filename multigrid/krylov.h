@@ -4,6 +4,8 @@
 // one: cycles alone first, which need no memory besides the level's own. Only where they reduce the
 // residual too little does flexible GCR take over, which minimises the residual over its last few
 // directions (strong stretch, indefinite systems far from a solution, exact curve rows).
+#include <limits>
+
 #include <drumhead/multigrid/warp.h>
 
 #include "cycle.h"
@@ -17,6 +19,7 @@ struct LinearOptions {
   double reduction = 0.1;  ///< and all other methods
   int most_cycles = 30;
   int directions = 20;  ///< stored pairs of GCR, 6 values a node each, allocated as they come
+  int most_idle = std::numeric_limits<int>::max();  ///< gcr: cycles in a row that gain nothing
   CycleKind kind = CycleKind::f;
   bool band = false;  ///< Cycle::relax_band
   /// gcr on rows with their jump: one cycle, whose residual is not looked at.
