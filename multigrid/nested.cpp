@@ -382,10 +382,11 @@ void nested_iteration(Hierarchy<T>& hierarchy, const NestedOptions& options, dou
     report.discretisation_max_px = error.max * cell_px;
     path.insert(path.end(), done.steps.begin(), done.steps.end());
     report.levels.push_back(in_pixels(level.nx, level.ny, std::move(path), cell_px));
-    if (ended_early(report.status)) return end_early(hierarchy, l, report);
-    if (newton_options.gives_up && shortened) {
+    if (newton_options.gives_up && (shortened || report.status == Status::not_finite)) {
       --start;
       clamp = {};
+    } else if (ended_early(report.status)) {
+      return end_early(hierarchy, l, report);
     }
   }
   note_areas(report);

@@ -164,7 +164,7 @@ struct SolveReport {
   CurveMethod curve_method = CurveMethod::averaged;  ///< the way that was taken: not automatic
   bool exact = false;
   int lattice_levels = 0;
-  std::vector<LevelReport> levels;  ///< levels of the nested iteration, coarsest first
+  std::vector<LevelReport> levels;  ///< coarsest first, also a start that was given up
   double work_units = 0.0;          ///< (cut + solve seconds) / work_unit_seconds
   double work_unit_seconds =
       0.0;  ///< one Hessian–vector product on the finest lattice, timed in this run
