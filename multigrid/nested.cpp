@@ -17,10 +17,9 @@ namespace {
 // Least cells of the lattice to start on. From 16² a wrong minimum was found; a feature of fewer
 // than four cells is not seen as one.
 constexpr int kStartCells = 32;
-// But this few are tried (not for exact rows), and the next lattice taken where a step had to be
-// shortened: S5, conforming, kappa/mu 100 and 1e4, otherwise does not end on 96² and 100² at half
-// of the offsets. Means of the 31 cases on 96², 100², 112²: .79 to 1.0 of the time from kStartCells
-// on; of 50 with other membranes .93, linear ones 1.08.
+// But this few are tried, and the next lattice taken where a step had to be shortened (S5,
+// conforming, kappa/mu 100, otherwise does not end on 96² at most offsets): .79 to 1.0 of the time
+// on 96² to 112². Not for exact rows, nor for masks of kappa (S3, 800²: 60 cycles instead of 15).
 constexpr int kTrialCells = 24;
 constexpr double kCellsPerFeature = 4.0;
 // A start finer than this would cost more than it is worth.
@@ -58,10 +57,8 @@ constexpr int kDirections = 6;
 // But where a mask of mu makes cells as soft as kappa/mu kSoft, the 20 that there are otherwise: mu
 // .01 in a disc, kappa 10, 256²: S2 and S4 stall with 6, S2 at 160² with 12, too.
 constexpr double kSoft = 300.0;
-// GCR forgets old directions, and cycles of a definite Hessian may then gain nothing for ever. So
-// many of them end it: the 31 cases take .78 to 1.0 of the time on 100² to 400². With 4 S5,
-// kappa/mu 1e4, 400² ends in another minimum. Exact rows and other membranes need all cycles: S2 by
-// 135°, kappa infinity, does not end otherwise.
+// So many cycles in a row that gain nothing end GCR: .78 to 1.0 of the time on 100² to 400². With 4
+// S5, kappa/mu 1e4, 400² ends in another minimum. Exact rows need all: S2 by 135°, kappa infinity.
 constexpr int kMostIdle = 6;
 // From this kappa/mu on contraction is at first better than it stays: S4, kappa 100, 100² ended
 // with .26 of the discretisation error, thought to be .08.
@@ -101,7 +98,8 @@ bool shortens(const std::vector<NewtonStep>& steps) {
 
 template <class T>
 int start_level(const Hierarchy<T>& hierarchy, const NestedOptions& options) {
-  const int least = options.exact ? kStartCells : kTrialCells;
+  const bool tries = !options.exact && !hierarchy[0].compliance;
+  const int least = tries ? kTrialCells : kStartCells;
   int start = 0;
   while (start + 1 < hierarchy.size() && cells(hierarchy[start + 1]) >= least) {
     const double feature = options.smallest_feature / double(hierarchy[start + 1].spacing);
@@ -285,9 +283,9 @@ void set_options(const Hierarchy<T>& hierarchy, int l, bool start, bool shortene
   newton.least_steps = finest ? 1 : !start && l == 1 && smooth(hierarchy, options) ? 3 : 2;
   const bool coarsely = !finest && loose(hierarchy, options, shortened);
   const double share = coarsely ? kCoarseShare : kShare;
-  const bool plain = finest && !shortened;
-  newton.share_of_change =
-      start ? 0.0 : share * (plain ? error_of_moves : options.discretisation_share);
+  newton.share_in_noise = start ? 0.0 : share * options.discretisation_share;
+  const bool told = !start && finest && !shortened;
+  newton.share_of_change = told ? share * error_of_moves : newton.share_in_noise;
   const double start_error = gentle(hierarchy)              ? kGentleStart
                              : averaged(hierarchy, options) ? kAveragedStart
                                                             : kStartError;
@@ -303,7 +301,7 @@ void set_accuracy(const Level<T>& level, bool finest, bool start, const NestedOp
                   NewtonOptions& newton) {
   if (finest && options.tolerance_cells > 0.0 && !options.exact) {
     newton.most_steps = kStartSteps;
-    newton.share_of_change = 0.0;
+    newton.share_of_change = newton.share_in_noise = 0.0;
     newton.tolerance_rms = options.tolerance_cells;
     // The moves of loosely solved steps say too little of pressures that are slow to settle.
     newton.linear.content = newton.linear.reduction = kAccurate;

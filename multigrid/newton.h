@@ -36,6 +36,8 @@ struct NewtonOptions {
   /// Besides: stop when the error left is under this share of the RMS of all that Newton changed on
   /// the level, of which the discretisation error is a fixed share in turn. 0: not a criterion.
   double share_of_change = 0.0;
+  /// This share suffices where it is below what moves by rounding leave.
+  double share_in_noise = 0.0;
   double most_volume_gap = 0.0;  ///< and, if > 0, not before NewtonReport::volume_gap is below
   int least_steps = 1;
   int most_steps = 8;

@@ -139,6 +139,9 @@ class Judge {
   // to 1.3; 1600² 6 to 9; S4 1600² 6 to 15. S4 3200² 17 to 41, long waves whose longest move is 4
   // to 7 times their RMS; where nodes by the curves still settle it is 10 to 60.
   static constexpr double kRounded = 20.0, kNoNearer = 0.9;
+  // And the error that they leave, to which share_in_noise holds: S2 kappa 10, conforming, 800² 3.3
+  // steps so, six without.
+  static constexpr double kSettled = 15.0;
   static constexpr double kRoundedWaves = 60.0, kWaves = 8.0;
   // So many shortened steps in a row whose full moves would be this often in the error wanted: the
   // merit, which weighs what linear solutions leave of volume rows with pressures of a thousand mu,
@@ -177,7 +180,9 @@ class Judge {
   double wanted(double rounding) const {
     const double wanted = options_.tolerance_rms;
     if (options_.share_of_change <= 0.0) return wanted;
-    return std::max({wanted, options_.share_of_change * report_.change_rms, rounding});
+    const double noise =
+        std::min(options_.share_in_noise * report_.change_rms, kSettled * rounding);
+    return std::max({wanted, options_.share_of_change * report_.change_rms, noise, rounding});
   }
   bool small(const NewtonStep& step, double rounding) const {
     return report_.error_rms <= wanted(rounding) &&
