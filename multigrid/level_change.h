@@ -67,7 +67,7 @@ class ErrorEstimate {
  private:
   // What a level says otherwise than the one before, as a share of what its steps move, where no
   // curve ends: S2 .73, S4 .57. With 1 instead, and for all levels, runs ended with .07 to .15 of
-  // the discretisation error, means of six offsets; so with .03 to .12, in 1.0 to 1.14 of the time.
+  // the discretisation error, means of six offsets; so with .03 to .14, in 1.0 to 1.14 of the time.
   static constexpr double kChangeOfMoves = 0.6;
   static LevelChange times(double share, const LevelChange& change) {
     return {share * change.rms, share * change.max};
