@@ -31,15 +31,7 @@ std::vector<grid::CurvePair> one_to_one(std::vector<grid::CurvePair> curves) {
   return curves;
 }
 
-}  // namespace
-
-/// Centroids and best rotation of a matched pair.
-struct LoadPath::Motion {
-  Point source, target;
-  double angle = 0.0;
-};
-
-LoadPath::Motion LoadPath::motion(const grid::CurvePair& curve) {
+Motion motion(const grid::CurvePair& curve) {
   const Point begin = curve.source.front().control[0];
   Point source, target;
   double total = 0.0, along = 0.0, across = 0.0;
@@ -75,10 +67,12 @@ LoadPath::Motion LoadPath::motion(const grid::CurvePair& curve) {
   return m;
 }
 
+}  // namespace
+
 double largest_turn(const std::vector<grid::CurvePair>& curves) {
   double largest = 0.0;
   for (const grid::CurvePair& curve : curves)
-    largest = std::max(largest, std::abs(LoadPath::motion(curve).angle));
+    largest = std::max(largest, std::abs(motion(curve).angle));
   return largest;
 }
 
@@ -86,8 +80,6 @@ LoadPath::LoadPath(const std::vector<grid::CurvePair>& curves)
     : curves_(one_to_one(curves)), part_(curves_) {
   for (const grid::CurvePair& curve : curves_) motions_.push_back(motion(curve));
 }
-
-LoadPath::~LoadPath() = default;
 
 const std::vector<grid::CurvePair>& LoadPath::at(double t) {
   if (t == 1.0) return curves_;

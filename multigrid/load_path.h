@@ -13,20 +13,21 @@ namespace drumhead::multigrid {
 /// length, about the centroids). With turn_degrees ≠ 0 it is the equivalent angle closest to that.
 double largest_turn(const std::vector<grid::CurvePair>& curves);
 
+/// Centroids and best rotation of a matched pair.
+struct Motion {
+  grid::Point source, target;
+  double angle = 0.0;
+};
+
 /// The way of curves to their targets. `curves`: such as grid::check lets pass.
 class LoadPath {
  public:
   explicit LoadPath(const std::vector<grid::CurvePair>& curves);
-  ~LoadPath();
   /// The curves, matched (grid::matched), with targets at share t of the way, 0…1; at 1 the targets
   /// themselves. Valid until the next call, at 1 as long as the path is.
   const std::vector<grid::CurvePair>& at(double t);
 
  private:
-  struct Motion;
-  static Motion motion(const grid::CurvePair& curve);
-  friend double largest_turn(const std::vector<grid::CurvePair>& curves);
-
   std::vector<grid::CurvePair> curves_, part_;
   std::vector<Motion> motions_;
 };
