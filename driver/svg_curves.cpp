@@ -11,6 +11,8 @@
 #include <stdexcept>
 
 #include "svg_shape.h"
+#include "svg_text.h"
+#include "svg_transform.h"
 
 namespace drumhead::driver {
 namespace {
@@ -41,7 +43,47 @@ Role take_suffix(std::string& name) {
   return Role::none;
 }
 
-bool is_group(std::string_view kind) { return kind == "g" || kind == "a" || kind == "switch"; }
+/// The one child that is drawn; none where there are more.
+pugi::xml_node only_child(pugi::xml_node group) {
+  pugi::xml_node only;
+  for (const pugi::xml_node child : group.children()) {
+    const std::string_view what = kind(child);
+    if (what.empty() || what == "title" || what == "desc" || what == "metadata") continue;
+    if (only) return {};
+    only = child;
+  }
+  return only;
+}
+
+/// The name of a shape; of one without, that of the innermost named group around nothing else,
+/// which is where Affinity writes it.
+std::string shape_name(pugi::xml_node shape) {
+  std::string name = name_of(shape);
+  for (pugi::xml_node group = shape.parent(); name.empty() && is_group(kind(group)) &&
+                                              layer_role(group) == Role::none && only_child(group);
+       group = group.parent()) {
+    name = name_of(group);
+  }
+  return name;
+}
+
+/// Whether a group's name is that of the one shape in it.
+bool names_shape(pugi::xml_node group) {
+  pugi::xml_node inner = group;
+  while (is_group(kind(inner))) inner = only_child(inner);
+  return inner && shape_name(inner) == name_of(group);
+}
+
+/// Whether a group outside the layers holds one, or a suffix; else it is art.
+bool holds_curves(pugi::xml_node group) {
+  for (const pugi::xml_node child : group.children()) {
+    if (kind(child).empty()) continue;
+    if (std::string name = shape_name(child); take_suffix(name) != Role::none) return true;
+    if (is_group(kind(child)) && (layer_role(child) != Role::none || holds_curves(child)))
+      return true;
+  }
+  return false;
+}
 
 /// A shape of a curve layer, in picture pixels.
 struct Drawn {
@@ -56,25 +98,26 @@ struct Drawn {
 /// out.
 using Visit = std::function<void(pugi::xml_node, Role, const Geom::Affine&)>;
 
-void walk(const SvgDocument& document, pugi::xml_node parent, Role role,
+void walk(const SvgDocument& document, const SvgView& view, pugi::xml_node parent, Role role,
           const Geom::Affine& to_root, const Visit& visit) {
   for (const pugi::xml_node element : parent.children()) {
     if (!is_group(kind(element))) {
       if (!kind(element).empty()) visit(element, role, to_root);
       continue;
     }
-    const auto transform = transform_of(element);
-    if (!transform) document.fail(element, "its transform cannot be read");
     const Role own = layer_role(element);
     std::string name = name_of(element);
-    if (own == Role::none && role == Role::none && take_suffix(name) != Role::none) {
+    if (own == Role::none && role == Role::none && take_suffix(name) != Role::none &&
+        !names_shape(element)) {
       document.fail(element, "the suffix belongs on the name of a path, not of a group");
     }
     if (own != Role::none && role != Role::none && own != role) {
       document.fail(element, "this layer lies in the layer '" +
                                  std::string(kRoleNames[std::size_t(role)]) + "'");
     }
-    walk(document, element, own == Role::none ? role : own, *transform * to_root, visit);
+    const Role inner = own == Role::none ? role : own;
+    if (inner == Role::none && !holds_curves(element)) continue;
+    walk(document, view, element, inner, transform_of(document, view, element) * to_root, visit);
   }
 }
 
@@ -98,7 +141,7 @@ class CurveReader {
   }
 
   std::vector<SvgCurve> read() {
-    walk(document_, document_.root(), Role::none, to_picture_,
+    walk(document_, view_, document_.root(), Role::none, to_picture_,
          [this](pugi::xml_node element, Role layer, const Geom::Affine& to_picture) {
            visit(element, layer, to_picture);
          });
@@ -115,20 +158,18 @@ class CurveReader {
 
  private:
   void visit(pugi::xml_node element, Role layer, const Geom::Affine& to_picture) {
-    std::string name = name_of(element);
+    std::string name = shape_name(element);
     const Role suffix = take_suffix(name);
     const Role role = layer == Role::none ? suffix : layer;
     if (role == Role::none) return;
     if (kind(element) == "svg" || kind(element) == "symbol") {
       document_.fail(element, "is not read among curves; draw its paths in the layer itself");
     }
-    const auto transform = transform_of(element);
-    if (!transform) document_.fail(element, "its transform cannot be read");
     pugi::xml_node shape = element;
-    Geom::Affine affine = *transform * to_picture;
+    Geom::Affine affine = transform_of(document_, view_, element) * to_picture;
     if (kind(element) == "use") {
       shape = used_shape(element);
-      affine = transform_of(shape).value_or(Geom::identity()) *
+      affine = transform_of(document_, view_, shape) *
                Geom::Translate(
                    svg_length(element.attribute("x").as_string("0"), view_.width).value_or(0),
                    svg_length(element.attribute("y").as_string("0"), view_.height).value_or(0)) *
@@ -294,7 +335,7 @@ void add_curve_elements(pugi::xml_node parent, std::vector<pugi::xml_node>& elem
         add_curve_elements(element, elements);
       else
         elements.push_back(element);
-    } else if (std::string name = name_of(element);
+    } else if (std::string name = shape_name(element);
                (is_shape(element) || kind(element) == "use") && take_suffix(name) != Role::none) {
       elements.push_back(element);
     }

@@ -3,7 +3,8 @@
 // Curve pairs from an SVG drawing. Layers or groups named `source` and `target` (case as written)
 // hold shapes paired by name; outside them a shape whose name ends in -source or -target belongs to
 // the pair of the rest of its name; what lies in a layer `pin` is held still. Everything else is
-// art and not read. A shape's subpaths are pairs of their own, in their order.
+// art and not read. A named group around one nameless shape names it. A shape's subpaths are pairs
+// of their own, in their order.
 #include <drumhead/grid/curve.h>
 #include <functional>
 #include <string>

@@ -1,116 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "svg_document.h"
 
-#include <2geom/transforms.h>
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
+#include "svg_text.h"
+
 namespace drumhead::driver {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\n\f";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-void skip_space(std::string_view& text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-}
-
-/// Takes a number off the front; from_chars alone would also read inf and nan and refuse a plus.
-std::optional<double> take_number(std::string_view& text) {
-  std::string_view rest = text;
-  if (rest.starts_with('+')) rest.remove_prefix(1);
-  const std::size_t digit = rest.starts_with('-') && rest.size() == text.size() ? 1 : 0;
-  if (rest.size() <= digit || (rest[digit] != '.' && (rest[digit] < '0' || rest[digit] > '9'))) {
-    return std::nullopt;
-  }
-  double x = 0.0;
-  const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), x);
-  if (error != std::errc{} || !std::isfinite(x)) return std::nullopt;
-  text.remove_prefix(std::size_t(stop - text.data()));
-  return x;
-}
-
-void skip_separator(std::string_view& text) {
-  skip_space(text);
-  if (text.starts_with(',')) {
-    text.remove_prefix(1);
-    skip_space(text);
-  }
-}
-
-/// The arguments of one transform function; CSS gives them the units px and deg.
-std::optional<std::vector<double>> arguments(std::string_view text) {
-  std::vector<double> numbers;
-  skip_space(text);
-  while (!text.empty()) {
-    const auto x = take_number(text);
-    if (!x) return std::nullopt;
-    numbers.push_back(*x);
-    for (const std::string_view unit : {"px", "deg"}) {
-      if (text.starts_with(unit)) text.remove_prefix(unit.size());
-    }
-    skip_separator(text);
-  }
-  return numbers;
-}
-
-std::optional<Geom::Affine> one_transform(std::string_view name, const std::vector<double>& a) {
-  const std::size_t n = a.size();
-  const auto angle = [&](std::size_t i) { return a[i] * std::numbers::pi / 180.0; };
-  if (name == "matrix" && n == 6) return Geom::Affine(a[0], a[1], a[2], a[3], a[4], a[5]);
-  if (name == "translate" && (n == 1 || n == 2)) return Geom::Translate(a[0], n == 2 ? a[1] : 0.0);
-  if (name == "scale" && (n == 1 || n == 2)) return Geom::Scale(a[0], n == 2 ? a[1] : a[0]);
-  if (name == "skewX" && n == 1) return Geom::Affine(1, 0, std::tan(angle(0)), 1, 0, 0);
-  if (name == "skewY" && n == 1) return Geom::Affine(1, std::tan(angle(0)), 0, 1, 0, 0);
-  if (name == "rotate" && n == 1) return Geom::Rotate(angle(0));
-  if (name == "rotate" && n == 3) {
-    return Geom::Translate(-a[1], -a[2]) * Geom::Rotate(angle(0)) * Geom::Translate(a[1], a[2]);
-  }
-  return std::nullopt;
-}
-
-std::optional<Geom::Affine> parse_transform(std::string_view text) {
-  Geom::Affine all = Geom::identity();
-  text = trimmed(text);
-  if (text == "none") return all;
-  while (!text.empty()) {
-    const auto open = text.find('('), close = text.find(')');
-    if (close == std::string_view::npos || open > close) return std::nullopt;
-    const auto numbers = arguments(text.substr(open + 1, close - open - 1));
-    const auto one =
-        numbers ? one_transform(trimmed(text.substr(0, open)), *numbers) : std::nullopt;
-    if (!one) return std::nullopt;
-    all = *one * all;  // 2geom multiplies row vectors: the last transform written acts first
-    text.remove_prefix(close + 1);
-    skip_separator(text);
-  }
-  return all;
-}
-
-/// The value of a property in a style attribute; empty if it is not there.
-std::string_view style_property(std::string_view style, std::string_view property) {
-  while (!style.empty()) {
-    const auto end = std::min(style.find(';'), style.size());
-    const std::string_view declaration = style.substr(0, end);
-    const auto colon = declaration.find(':');
-    if (colon != std::string_view::npos && trimmed(declaration.substr(0, colon)) == property) {
-      return trimmed(declaration.substr(colon + 1));
-    }
-    style.remove_prefix(std::min(end + 1, style.size()));
-  }
-  return {};
-}
 
 /// Drawings are read by recursion; programs that write them nest a few dozen elements.
 struct Depth : pugi::xml_tree_walker {
@@ -201,47 +100,14 @@ std::string_view kind(pugi::xml_node element) {
   return name.substr(name.find(':') + 1);  // find gives npos = -1 where there is no prefix
 }
 
+bool is_group(std::string_view kind) { return kind == "g" || kind == "a" || kind == "switch"; }
+
 std::string name_of(pugi::xml_node element) {
-  for (const char* attribute : {"inkscape:label", "data-name", "id"}) {
+  for (const char* attribute : {"inkscape:label", "data-name", "serif:id", "id"}) {
     const std::string_view name = trimmed(element.attribute(attribute).value());
     if (!name.empty()) return std::string(name);
   }
   return {};
-}
-
-std::optional<double> svg_length(std::string_view text, double whole) {
-  using Unit = std::pair<std::string_view, double>;
-  constexpr std::array<Unit, 8> kUnits{{{"", 1.0},
-                                        {"px", 1.0},
-                                        {"in", 96.0},
-                                        {"cm", 96.0 / 2.54},
-                                        {"mm", 96.0 / 25.4},
-                                        {"pt", 96.0 / 72.0},
-                                        {"pc", 16.0},
-                                        {"Q", 24.0 / 25.4}}};
-  text = trimmed(text);
-  const auto x = take_number(text);
-  if (!x) return std::nullopt;
-  if (text == "%") return *x / 100.0 * whole;
-  for (const auto& [unit, pixels] : kUnits) {
-    if (text == unit) return *x * pixels;
-  }
-  return std::nullopt;
-}
-
-std::optional<std::vector<double>> svg_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  for (skip_space(text); !text.empty(); skip_separator(text)) {
-    const auto x = take_number(text);
-    if (!x) return std::nullopt;
-    numbers.push_back(*x);
-  }
-  return numbers;
-}
-
-std::optional<Geom::Affine> transform_of(pugi::xml_node element) {
-  const auto css = style_property(element.attribute("style").value(), "transform");
-  return parse_transform(css.empty() ? element.attribute("transform").value() : css);
 }
 
 }  // namespace drumhead::driver

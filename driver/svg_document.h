@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An SVG file as drawing programs save it: elements, their names and places for errors, lengths
-// with units, transforms, and the view box that is stretched onto the picture.
-#include <2geom/affine.h>
+// An SVG file as drawing programs save it: elements, their names and places for errors, and the
+// view box that is stretched onto the picture.
 #include <filesystem>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace drumhead::driver {
 
@@ -57,20 +55,11 @@ class SvgDocument {
 /// "path" for <path> and <svg:path>; empty for what is no element.
 std::string_view kind(pugi::xml_node element);
 
-/// inkscape:label, else data-name (Illustrator's name where it had to change the id), else id;
-/// trimmed.
+/// "g", "a" or "switch": what only holds others and moves them.
+bool is_group(std::string_view kind);
+
+/// inkscape:label, else data-name or serif:id (Illustrator's and Affinity's name where they had to
+/// change the id), else id; trimmed.
 std::string name_of(pugi::xml_node element);
-
-/// A number or a length of SVG in user units: px, mm, cm, in, pt, pc, Q at 96 to the inch, or % of
-/// `whole`. Nothing if it is none of these.
-std::optional<double> svg_length(std::string_view text, double whole);
-
-/// Numbers separated by white space and at most one comma each; nothing if anything else is among
-/// them.
-std::optional<std::vector<double>> svg_numbers(std::string_view text);
-
-/// The `transform` of style or attribute as SVG and CSS write it; identity if there is none;
-/// nothing if it cannot be read.
-std::optional<Geom::Affine> transform_of(pugi::xml_node element);
 
 }  // namespace drumhead::driver

@@ -13,6 +13,7 @@
 
 #include "atomic_file.h"
 #include "svg_curves.h"
+#include "svg_text.h"
 
 namespace drumhead::driver {
 namespace {

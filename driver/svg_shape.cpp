@@ -12,6 +12,8 @@
 #include <memory>
 #include <numbers>
 
+#include "svg_text.h"
+
 namespace drumhead::driver {
 namespace {
 

@@ -7,6 +7,7 @@
 #include "driver_scratch.h"
 #include "svg_curves.h"
 #include "svg_document.h"
+#include "svg_text.h"
 
 namespace drumhead::driver {
 namespace {
@@ -152,6 +153,56 @@ TEST(DriverSvg, NamesComeFromLabelThenDataNameThenIdAndFromSuffixes) {
   EXPECT_TRUE(torture().warnings.empty());
 }
 
+/// The start of the pin `a`, whose path is "M 30 20 L 40 60", among elements with attributes.
+grid::Point moved_start(const std::string& group, const std::string& path) {
+  return read("<g id='pin'><g " + group + "><path id='a' d='M 30 20 L 40 60' " + path +
+              "/></g></g>")
+      .curves.at(0)
+      .pair.source[0]
+      .at(0.0);
+}
+
+TEST(DriverSvg, TransformsActAboutTheirOrigin) {
+  // A quarter turn takes (x, y) from its origin to (-y, x).
+  const std::string turn = "transform='rotate(90)' ";
+  expect_near({-20, 30}, moved_start("", turn));
+  expect_near({10, 40}, moved_start("", turn + "transform-origin='10px 20 0'"));
+  expect_near({80, 30}, moved_start("", turn + "transform-origin='50% 50%'"));
+  expect_near({80, 30}, moved_start("", turn + "transform-origin='center'"));
+  expect_near({30, -20}, moved_start("", turn + "transform-origin='top'"));
+  expect_near({30, -20}, moved_start("", turn + "transform-origin='top center'"));
+  expect_near({180, 30}, moved_start("", turn + "style='transform-origin: right bottom'"));
+  expect_near({10, 10}, moved_start(turn + "style='transform-origin:25px 5px'", ""));
+  expect_near({30, 20}, moved_start("", "transform-origin='7px 7px'"));
+}
+
+TEST(DriverSvg, FillBoxIsTheBoxAroundTheShapes) {
+  const std::string turn = "style='transform-box: fill-box; transform-origin: 50% 50%; ";
+  expect_near({55, 35}, moved_start("", turn + "transform: rotate(90deg)'"));
+  expect_near({55, 35}, moved_start(turn + "transform: rotate(90deg)'", ""));
+  // The box of the group is that of the path already moved: from (130, 20) to (140, 60).
+  expect_near({155, 35},
+              moved_start(turn + "transform: rotate(90deg)'", "transform='translate(100)'"));
+}
+
+TEST(DriverSvg, AGroupAroundOneNamelessShapeNamesIt) {
+  const std::string shape = "<path d='M0 0L9 9'/>";
+  const auto wrapped = [&](const std::string& name) {
+    return "<g id='" + name + "'><title>t</title><g>" + shape + "</g></g>";
+  };
+  EXPECT_EQ(pair(read(layers(wrapped("a"), wrapped("a-target"))), "a").name, "a");
+  EXPECT_EQ(pair(read(wrapped("b-source") + wrapped("b-target")), "b").name, "b");
+  EXPECT_EQ(
+      pair(read(layers("<path id='c1' serif:id='c' d='M0 0L9 9'/>", "<path id='c' d='M0 0L9 9'/>")),
+           "c")
+          .name,
+      "c");
+  EXPECT_NE(error_of(layers("<g id='a'>" + shape + shape + "</g>", "")).find("path: has no name"),
+            std::string::npos);
+  EXPECT_NE(error_of("<g id='b-source'>" + shape + shape + "</g>").find("the suffix belongs"),
+            std::string::npos);
+}
+
 TEST(DriverSvg, PinsAreTheirOwnTargetsAndNeedNoName) {
   const SvgCurve& pin = torture().curves.back();
   EXPECT_TRUE(pin.pin);
@@ -251,6 +302,12 @@ TEST(DriverSvg, ErrorsNameFileLineAndElement) {
             "points must be pairs of numbers"},
            {layers("<path id='a' transform='turn(1)' d='M0 0L9 9'/>", target_a),
             ":2: path 'a': its transform cannot be read"},
+           {layers("<path id='a' transform='scale(2)' transform-origin='1em' d='M0 0L9 9'/>", ""),
+            ":2: path 'a': its transform-origin '1em' cannot be read"},
+           {layers("<path id='a' style='transform:scale(2);transform-box:stroke-box'/>", ""),
+            ":2: path 'a': its transform-box 'stroke-box' is not read"},
+           {"<g id='pin' transform='scale(2)' style='transform-box:fill-box'><text id='t'/></g>",
+            ":2: text 't': transform-box: fill-box is read of shapes and groups"},
            {layers("<use id='a' href='#nowhere'/>", target_a), "no shape of this file"},
            {layers("<svg id='a'/>", target_a), ":2: svg 'a': is not read among curves"},
            {layers(target_a, ""), "its suffix says another layer"},
@@ -267,6 +324,14 @@ TEST(DriverSvg, ErrorsNameFileLineAndElement) {
     EXPECT_NE(message.find("curves.svg"), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
+}
+
+TEST(DriverSvg, ArtMayHoldWhatCurvesMayNot) {
+  const std::string art = "<g transform='scale(2)' style='transform-box:fill-box'><text/></g>";
+  EXPECT_EQ(read(art + "<g><g id='pin'><path d='M1 1L2 2'/></g></g>").curves.size(), 1u);
+  EXPECT_NE(error_of("<g style='transform:turn(1)'><path id='a-source' d='M0 0L9 9'/></g>")
+                .find(":2: g: its transform cannot be read"),
+            std::string::npos);
 }
 
 TEST(DriverSvg, TextAmongCurvesIsLeftOutWithAWarning) {
